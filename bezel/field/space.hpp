@@ -1,0 +1,89 @@
+#pragma once
+// Spaces of piecewise polynomials on a mesh.
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "bezel/bernstein/triangle.hpp"
+#include "bezel/mesh/mesh.hpp"
+
+namespace bezel {
+
+/// In which coordinates an element's polynomial lives.
+enum class Basis {
+  reference,  ///< mapped, isoparametric ("pre-image basis"): polynomial in the reference triangle's coordinates
+  physical    ///< "global-coordinates basis": polynomial in x and y, Bernstein form on the element's Frame
+};
+enum class Continuity { discontinuous, continuous };
+
+/// The affine triangle on which a physical-basis element's Bernstein polynomial is written:
+/// lambda_k(x) = 1/3 + gradient[k] . (x - centre), gradient[0] + gradient[1] + gradient[2] = 0.
+struct Frame {
+  Vec2 centre;
+  std::array<Vec2, 3> gradient;
+  std::array<double, 3> lambda(const Vec2& x) const {
+    const Vec2 r = x - centre;
+    return {1.0 / 3.0 + dot(gradient[0], r), 1.0 / 3.0 + dot(gradient[1], r), 1.0 / 3.0 + dot(gradient[2], r)};
+  }
+  std::array<Vec2, 3> corners() const;
+  friend bool operator==(const Frame&, const Frame&) = default;
+};
+
+/// The frame a physical basis uses for an element: an equilateral triangle around the centre of the control
+/// points' bounding box, circumradius 1.25 times the box's half diagonal; for elements of aspect ratio above 8 the
+/// equilateral triangle is stretched along the element's principal axes (else high degrees lose all digits).
+Frame element_frame(std::span<const Vec2> control);
+
+/// Basis, degree per element, continuity and the map coefficients = A * dofs. Immutable; cheap to share.
+class Space {
+ public:
+  static constexpr int max_degree = 10;
+
+  /// Discontinuous, the same degree (0..max_degree) on every element.
+  static std::shared_ptr<const Space> discontinuous(std::shared_ptr<const TriangleMesh> mesh, int degree,
+                                                    Basis basis = Basis::reference);
+  /// Discontinuous, a degree per element.
+  static std::shared_ptr<const Space> discontinuous(std::shared_ptr<const TriangleMesh> mesh,
+                                                    std::vector<int> degrees, Basis basis = Basis::reference);
+  /// Discontinuous physical basis with the frames given (the native file format restores them exactly).
+  static std::shared_ptr<const Space> discontinuous(std::shared_ptr<const TriangleMesh> mesh,
+                                                    std::vector<int> degrees, std::vector<Frame> frames);
+  /// Continuous (C0) Lagrange space, degree 1..max_degree, reference basis.
+  static std::shared_ptr<const Space> continuous(std::shared_ptr<const TriangleMesh> mesh, int degree);
+
+  const std::shared_ptr<const TriangleMesh>& mesh() const { return mesh_; }
+  Basis basis() const { return basis_; }
+  Continuity continuity() const { return continuity_; }
+  int degree(ElementId e) const { return uniform_degree_ >= 0 ? uniform_degree_ : degrees_[e.index()]; }
+  int uniform_degree() const { return uniform_degree_; }  ///< -1 when it varies
+  int highest_degree() const { return highest_degree_; }
+  /// Position of the element's first coefficient; element e holds triangle_size(degree(e)) of them.
+  std::size_t offset(ElementId e) const;
+  std::size_t coefficient_count() const { return coefficient_count_; }
+  /// Number of degrees of freedom (equals coefficient_count() when discontinuous).
+  std::size_t dof_count() const { return dof_count_; }
+  /// Global dof of each coefficient of an element (continuous spaces; size triangle_size(degree)).
+  std::span<const std::int32_t> dofs(ElementId e) const;
+  const Frame& frame(ElementId e) const { return frames_[e.index()]; }  ///< physical basis only
+  std::span<const Frame> frames() const { return frames_; }
+
+  /// Element coefficients from dofs, components interleaved: sizes dof_count()*components -> coefficient_count()*components.
+  std::vector<double> expand(std::span<const double> dofs, int components = 1) const;
+
+ private:
+  Space() = default;
+  std::shared_ptr<const TriangleMesh> mesh_;
+  Basis basis_ = Basis::reference;
+  Continuity continuity_ = Continuity::discontinuous;
+  int uniform_degree_ = -1;
+  int highest_degree_ = 0;
+  std::vector<int> degrees_;
+  std::vector<std::size_t> offsets_;
+  std::size_t coefficient_count_ = 0, dof_count_ = 0;
+  std::vector<std::int32_t> dofs_;
+  std::vector<Frame> frames_;
+};
+
+}  // namespace bezel
