@@ -9,14 +9,14 @@ std::string compose(const InputPlace& place, const std::string& message) {
   std::string text;
   if (!place.file.empty()) {
     text += place.file;
-    if (place.line > 0) text += ":" + std::to_string(place.line);
+    if (place.line > 0) text.append(":").append(std::to_string(place.line));
     text += ": ";
   } else if (place.line > 0) {
-    text += "line " + std::to_string(place.line) + ": ";
+    text.append("line ").append(std::to_string(place.line)).append(": ");
   }
   if (!place.element_kind.empty()) {
     text += place.element_kind;
-    if (place.element >= 0) text += " " + std::to_string(place.element);
+    if (place.element >= 0) text.append(" ").append(std::to_string(place.element));
     text += ": ";
   }
   return text + message;

@@ -41,7 +41,8 @@ class InputError : public Error {
   std::string message_;
 };
 
-/// The numerics gave up on legitimate input (no convergence, unresolved geometry). what() says where.
+/// The numerics gave up on legitimate input (no convergence, unresolved geometry). what() says
+/// where.
 class NumericsError : public Error {
  public:
   using Error::Error;
