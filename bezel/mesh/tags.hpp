@@ -32,7 +32,7 @@ struct TaggedEdge {
 };
 struct TaggedPoint {
   NodeId node;
-  int entity = 0;             ///< tag of a 0D Entity
+  int entity = 0;  ///< tag of a 0D Entity
   friend bool operator==(const TaggedPoint&, const TaggedPoint&) = default;
 };
 
@@ -40,7 +40,8 @@ struct TaggedPoint {
 struct Tags {
   std::vector<PhysicalGroup> groups;
   std::vector<Entity> entities;
-  std::vector<int> element_entity;  ///< per element, tag of a 2D Entity; empty when there are no tags
+  std::vector<int>
+      element_entity;  ///< per element, tag of a 2D Entity; empty when there are no tags
   std::vector<TaggedEdge> edges;
   std::vector<TaggedPoint> points;
   friend bool operator==(const Tags&, const Tags&) = default;
