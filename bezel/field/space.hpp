@@ -13,8 +13,10 @@ namespace bezel {
 
 /// In which coordinates an element's polynomial lives.
 enum class Basis {
-  reference,  ///< mapped, isoparametric ("pre-image basis"): polynomial in the reference triangle's coordinates
-  physical    ///< "global-coordinates basis": polynomial in x and y, Bernstein form on the element's Frame
+  reference,  ///< mapped, isoparametric ("pre-image basis"): polynomial in the reference triangle's
+              ///< coordinates
+  physical  ///< "global-coordinates basis": polynomial in x and y, Bernstein form on the element's
+            ///< Frame
 };
 enum class Continuity { discontinuous, continuous };
 
@@ -23,40 +25,78 @@ enum class Continuity { discontinuous, continuous };
 struct Frame {
   Vec2 centre;
   std::array<Vec2, 3> gradient;
+  /// Barycentric coordinates of a point; they sum to 1 up to rounding, and are negative outside the
+  /// frame.
   std::array<double, 3> lambda(const Vec2& x) const {
     const Vec2 r = x - centre;
-    return {1.0 / 3.0 + dot(gradient[0], r), 1.0 / 3.0 + dot(gradient[1], r), 1.0 / 3.0 + dot(gradient[2], r)};
+    return {1.0 / 3.0 + dot(gradient[0], r), 1.0 / 3.0 + dot(gradient[1], r),
+            1.0 / 3.0 + dot(gradient[2], r)};
   }
+  /// The point with the given barycentric coordinates (sum 1): the inverse of lambda().
+  Vec2 point(const std::array<double, 3>& lambda) const;
+  /// The three corners, counter-clockwise for a frame made by element_frame().
   std::array<Vec2, 3> corners() const;
   friend bool operator==(const Frame&, const Frame&) = default;
 };
 
-/// The frame a physical basis uses for an element: an equilateral triangle around the centre of the control
-/// points' bounding box, circumradius 1.25 times the box's half diagonal; for elements of aspect ratio above 8 the
-/// equilateral triangle is stretched along the element's principal axes (else high degrees lose all digits).
+/// The frame a physical basis uses for an element.
+///
+/// An equilateral triangle around the centre of the control points' bounding box, circumradius 1.25
+/// times the box's half diagonal. When the aspect ratio (square root of the ratio of the
+/// eigenvalues of the control points' covariance) exceeds 8, the box is taken along the principal
+/// axes and the triangle, equilateral once the box is scaled to a square, is stretched with it
+/// (else high degrees lose all digits).
+///
+/// @param control  control points of the element, finite, not all equal
+/// @throws InputError when control is empty, a value is not finite, or all points coincide
+/// @accuracy barycentrics of the element's control points lie within -0.201 .. 0.867
 Frame element_frame(std::span<const Vec2> control);
 
-/// Basis, degree per element, continuity and the map coefficients = A * dofs. Immutable; cheap to share.
+/// Basis, degree per element, continuity and the map coefficients = A * dofs. Immutable; cheap to
+/// share.
+///
+/// Elements are numbered as in the mesh; element e owns coefficients offset(e) .. offset(e) +
+/// triangle_size(degree(e)).
 class Space {
  public:
   static constexpr int max_degree = 10;
 
-  /// Discontinuous, the same degree (0..max_degree) on every element.
-  static std::shared_ptr<const Space> discontinuous(std::shared_ptr<const TriangleMesh> mesh, int degree,
-                                                    Basis basis = Basis::reference);
+  /// Discontinuous, the same degree on every element.
+  /// @param degree  0..max_degree
+  /// @throws InputError for a null mesh, a bad degree, or (physical basis) an element without
+  /// extent
+  static std::shared_ptr<const Space> discontinuous(std::shared_ptr<const TriangleMesh> mesh,
+                                                    int degree, Basis basis = Basis::reference);
   /// Discontinuous, a degree per element.
+  /// @param degrees  one per element, each 0..max_degree
+  /// @throws InputError as above, naming the triangle; or when the number of degrees is wrong
   static std::shared_ptr<const Space> discontinuous(std::shared_ptr<const TriangleMesh> mesh,
-                                                    std::vector<int> degrees, Basis basis = Basis::reference);
-  /// Discontinuous physical basis with the frames given (the native file format restores them exactly).
+                                                    std::vector<int> degrees,
+                                                    Basis basis = Basis::reference);
+  /// Discontinuous physical basis with the frames given (the native file format restores them
+  /// exactly).
+  /// @param frames  one per element: finite, gradients that add up to zero and are not parallel
+  /// @throws InputError as above, naming the triangle
   static std::shared_ptr<const Space> discontinuous(std::shared_ptr<const TriangleMesh> mesh,
-                                                    std::vector<int> degrees, std::vector<Frame> frames);
-  /// Continuous (C0) Lagrange space, degree 1..max_degree, reference basis.
-  static std::shared_ptr<const Space> continuous(std::shared_ptr<const TriangleMesh> mesh, int degree);
+                                                    std::vector<int> degrees,
+                                                    std::vector<Frame> frames);
+  /// Continuous (C0) space. Dofs are the Bernstein coefficients that elements share: those of the
+  /// vertices by ascending NodeId, then degree-1 per edge in the edge's canonical direction, then
+  /// the interior ones by element.
+  /// @param degree  1..max_degree
+  /// @param basis   Basis::reference; a polynomial of degree p in x and y has degree p g along a
+  /// curved edge, which
+  ///                the p+1 coefficients of the edge do not determine
+  /// @throws InputError for a null mesh, a bad degree, the physical basis, or hanging vertices
+  static std::shared_ptr<const Space> continuous(std::shared_ptr<const TriangleMesh> mesh,
+                                                 int degree, Basis basis = Basis::reference);
 
   const std::shared_ptr<const TriangleMesh>& mesh() const { return mesh_; }
   Basis basis() const { return basis_; }
   Continuity continuity() const { return continuity_; }
-  int degree(ElementId e) const { return uniform_degree_ >= 0 ? uniform_degree_ : degrees_[e.index()]; }
+  int degree(ElementId e) const {
+    return uniform_degree_ >= 0 ? uniform_degree_ : degrees_[e.index()];
+  }
   int uniform_degree() const { return uniform_degree_; }  ///< -1 when it varies
   int highest_degree() const { return highest_degree_; }
   /// Position of the element's first coefficient; element e holds triangle_size(degree(e)) of them.
@@ -64,12 +104,16 @@ class Space {
   std::size_t coefficient_count() const { return coefficient_count_; }
   /// Number of degrees of freedom (equals coefficient_count() when discontinuous).
   std::size_t dof_count() const { return dof_count_; }
-  /// Global dof of each coefficient of an element (continuous spaces; size triangle_size(degree)).
+  /// Global dof of each coefficient of an element (size triangle_size(degree); empty when
+  /// discontinuous).
   std::span<const std::int32_t> dofs(ElementId e) const;
   const Frame& frame(ElementId e) const { return frames_[e.index()]; }  ///< physical basis only
   std::span<const Frame> frames() const { return frames_; }
 
-  /// Element coefficients from dofs, components interleaved: sizes dof_count()*components -> coefficient_count()*components.
+  /// Element coefficients from dofs, components interleaved (a copy when discontinuous).
+  /// @param dofs  shape (dof_count(), components)
+  /// @return      shape (coefficient_count(), components)
+  /// @throws InputError when the size is wrong or components < 1
   std::vector<double> expand(std::span<const double> dofs, int components = 1) const;
 
  private:

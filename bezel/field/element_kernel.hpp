@@ -1,0 +1,123 @@
+#pragma once
+// Shared by the .cpp files of this module: an element with its polynomial, quadrature, sums,
+// chunked loops.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "bezel/base/parallel.hpp"
+#include "bezel/bernstein/triangle.hpp"
+#include "bezel/field/space.hpp"
+#include "bezel/geometry/triangle.hpp"
+#include "bezel/numeric/quadrature.hpp"
+
+namespace bezel::field_detail {
+
+inline constexpr int largest_size = bernstein::triangle_size(TriangleMesh::max_degree);
+static_assert(TriangleMesh::max_degree >= Space::max_degree);
+
+/// Neumaier's compensated sum: error below 2 u |sum| + n^2 u^2 sum |terms|.
+class CompensatedSum {
+ public:
+  void add(double x) {
+    const double t = sum_ + x;
+    carry_ += std::abs(sum_) >= std::abs(x) ? (sum_ - t) + x : (x - t) + sum_;
+    sum_ = t;
+  }
+  double value() const { return sum_ + carry_; }
+
+ private:
+  double sum_ = 0.0, carry_ = 0.0;
+};
+
+/// The map of an element at a point: x and the derivatives d/du, d/dv.
+struct MapPoint {
+  Vec2 x, du, dv;
+  double det() const { return cross(du, dv); }
+};
+
+/// Gradient (d/dx, d/dy) from (d/du, d/dv).
+inline Vec2 to_physical(const MapPoint& map, double du, double dv) {
+  const double det = map.det();
+  return {(du * map.dv.y() - dv * map.du.y()) / det, (dv * map.du.x() - du * map.dv.x()) / det};
+}
+
+/// An element's control points on the stack, and its map.
+class ElementMap {
+ public:
+  ElementMap(const TriangleMesh& mesh, ElementId e) : degree_(mesh.degree()) {
+    size_ = static_cast<std::size_t>(mesh.nodes_per_element());
+    mesh.gather(e, {control_.data(), size_});
+  }
+  int degree() const { return degree_; }
+  std::span<const Vec2> control() const { return {control_.data(), size_}; }
+  Vec2 operator()(const Lambda& lambda) const {
+    return bernstein::evaluate<Vec2>(degree_, control(), lambda);
+  }
+  MapPoint derivatives(const Lambda& lambda) const {
+    const auto v = bernstein::evaluate_gradient<Vec2>(degree_, control(), lambda);
+    return {v.value, v.du, v.dv};
+  }
+
+ private:
+  int degree_;
+  std::size_t size_;
+  std::array<Vec2, static_cast<std::size_t>(largest_size)> control_;
+};
+
+/// Where an element's polynomial is evaluated: the reference point itself, or the frame's
+/// coordinates of its image.
+inline Lambda own_lambda(const Space& space, ElementId e, const ElementMap& map,
+                         const Lambda& lambda) {
+  return space.basis() == Basis::reference ? lambda : space.frame(e).lambda(map(lambda));
+}
+
+/// Degree in reference coordinates of a polynomial of degree d in the space's own coordinates,
+/// times the Jacobian.
+inline int integrand_degree(const Space& space, int d) {
+  const int g = space.mesh()->degree();
+  return (space.basis() == Basis::physical ? d * g : d) + 2 * (g - 1);
+}
+
+/// A rule exact to `degree`: triangle_rule up to its limit 80, above it the product of Gauss rules
+/// collapsed to the triangle (positive weights, interior points; n points per direction are exact
+/// to degree 2n-2).
+TriangleRule rule_of_degree(int degree);
+
+/// Rules by degree, made once for the degrees that a space needs.
+class RuleTable {
+ public:
+  /// One rule for each distinct element degree p: exact to degree_of(p).
+  RuleTable(const Space& space, const std::function<int(int)>& degree_of);
+  const TriangleRule& operator()(int p) const { return rule_[static_cast<std::size_t>(p)]; }
+
+ private:
+  std::array<TriangleRule, static_cast<std::size_t>(Space::max_degree) + 1> rule_;
+};
+
+/// Calls body(element) for all elements, 32 to a task.
+inline void for_elements(const TriangleMesh& mesh, const std::function<void(ElementId)>& body,
+                         int threads = 0) {
+  constexpr std::size_t chunk = 32;
+  const std::size_t n = mesh.element_count();
+  parallel_for((n + chunk - 1) / chunk,
+               [&](std::size_t c) {
+                 for (std::size_t e = c * chunk; e < std::min(n, (c + 1) * chunk); ++e)
+                   body(ElementId(e));
+               },
+               threads);
+}
+
+/// Equally spaced node n of degree d; the centroid for degree 0.
+inline Lambda lattice_point(int d, int n) {
+  if (d == 0) return {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
+  const std::array<int, 3> ijk = bernstein::triangle_multi_index(d, n);
+  const double s = static_cast<double>(d);
+  return {ijk[0] / s, ijk[1] / s, ijk[2] / s};
+}
+
+}  // namespace bezel::field_detail

@@ -1,0 +1,311 @@
+#include "bezel/field/space.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "bezel/base/error.hpp"
+#include "bezel/base/parallel.hpp"
+
+namespace bezel {
+namespace {
+
+constexpr double aspect_limit = 8.0;
+constexpr double circumradius = 1.25;  // in half diagonals of the box
+// Elements thinner than this (or collinear) get a frame of this aspect: the mass matrix fails
+// first.
+constexpr double thinnest = 1e-10;
+
+bool finite(const Vec2& p) {
+  return std::isfinite(p.x()) && std::isfinite(p.y());
+}
+
+/// Unit vector of the larger eigenvalue and the aspect ratio of the control points' covariance.
+struct Principal {
+  Vec2 axis;
+  double aspect;
+};
+
+Principal principal(std::span<const Vec2> control, const Box2& box) {
+  Vec2 mean{};
+  for (const Vec2& p : control) mean += p - box.lo;
+  mean *= 1.0 / static_cast<double>(control.size());
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  for (const Vec2& p : control) {
+    const Vec2 r = p - box.lo - mean;
+    xx += r.x() * r.x();
+    xy += r.x() * r.y();
+    yy += r.y() * r.y();
+  }
+  const double half = 0.5 * (xx - yy);
+  const double root = std::sqrt(half * half + xy * xy);
+  const double large = 0.5 * (xx + yy) + root;
+  // det / large instead of trace/2 - root: no cancellation beyond that of the determinant itself.
+  const double small = std::max(0.0, (xx * yy - xy * xy) / large);
+  Vec2 axis = half >= 0.0 ? Vec2{root + half, xy} : Vec2{xy, root - half};
+  const double length = norm(axis);
+  axis = length > 0.0 ? axis * (1.0 / length) : Vec2{1.0, 0.0};
+  const double aspect =
+      small > 0.0 ? std::sqrt(large / small) : std::numeric_limits<double>::infinity();
+  return {axis, aspect};
+}
+
+/// Directions of the corners of an equilateral triangle: lower left, lower right, top.
+std::array<Vec2, 3> directions() {
+  const double half_root3 = 0.5 * std::sqrt(3.0);
+  return {Vec2{-half_root3, -0.5}, Vec2{half_root3, -0.5}, Vec2{0.0, 1.0}};
+}
+
+/// lambda_k = 1 at centre + radius * A d_k means gradient_k = 2/3 / radius * A^-T d_k.
+Frame make_frame(const Vec2& centre, const Vec2& axis, double radius_along, double radius_across) {
+  const std::array<Vec2, 3> d = directions();
+  const Vec2 across{-axis.y(), axis.x()};
+  Frame frame;
+  frame.centre = centre;
+  for (std::size_t k = 0; k < 2; ++k)
+    frame.gradient[k] = axis * (2.0 / 3.0 / radius_along * d[k].x()) +
+                        across * (2.0 / 3.0 / radius_across * d[k].y());
+  frame.gradient[2] = -(frame.gradient[0] + frame.gradient[1]);
+  return frame;
+}
+
+void check_mesh(const std::shared_ptr<const TriangleMesh>& mesh) {
+  if (!mesh) throw InputError("a space needs a mesh, found a null pointer");
+}
+
+void check_degree(int degree, int lowest, std::int64_t element = -1) {
+  if (degree >= lowest && degree <= Space::max_degree) return;
+  InputPlace place;
+  if (element >= 0) {
+    place.element_kind = "triangle";
+    place.element = element;
+  }
+  throw InputError(place, fmt::format("field degree {} is not supported, expected {}..{}", degree,
+                                      lowest, Space::max_degree));
+}
+
+void check_frame(const Frame& frame, std::int64_t element) {
+  const auto fail = [&](const char* what) {
+    throw InputError({{}, 0, "triangle", element}, std::string("frame: ") + what);
+  };
+  double size = 0.0;
+  for (const Vec2& g : frame.gradient) {
+    if (!finite(g)) fail("a gradient is not finite");
+    size = std::max(size, norm(g));
+  }
+  if (!finite(frame.centre)) fail("the centre is not finite");
+  const Vec2 sum = frame.gradient[0] + frame.gradient[1] + frame.gradient[2];
+  if (norm(sum) > 1e-12 * size) fail("the three gradients must add up to zero");
+  if (cross(frame.gradient[0], frame.gradient[1]) == 0.0)
+    fail("the gradients are parallel, expected a triangle with an area");
+}
+
+}  // namespace
+
+Vec2 Frame::point(const std::array<double, 3>& l) const {
+  // gradient[1] . r = l1 - 1/3, gradient[2] . r = l2 - 1/3.
+  const double a = l[1] - 1.0 / 3.0, b = l[2] - 1.0 / 3.0;
+  const double det = cross(gradient[1], gradient[2]);
+  return centre + Vec2{(a * gradient[2].y() - b * gradient[1].y()) / det,
+                       (b * gradient[1].x() - a * gradient[2].x()) / det};
+}
+
+std::array<Vec2, 3> Frame::corners() const {
+  return {point({1.0, 0.0, 0.0}), point({0.0, 1.0, 0.0}), point({0.0, 0.0, 1.0})};
+}
+
+Frame element_frame(std::span<const Vec2> control) {
+  if (control.empty()) throw InputError("an element frame needs control points, found none");
+  Box2 box;
+  for (const Vec2& p : control) {
+    if (!finite(p)) throw InputError("a control point is not finite");
+    box.include(p);
+  }
+  const double diagonal = box.diameter();
+  if (!(diagonal > 0.0))
+    throw InputError("all control points of an element coincide, expected a triangle");
+  const Principal main = principal(control, box);
+  if (main.aspect <= aspect_limit) {
+    const double radius = circumradius * 0.5 * diagonal;
+    return make_frame(box.centre(), Vec2{1.0, 0.0}, radius, radius);
+  }
+  const Vec2 across{-main.axis.y(), main.axis.x()};
+  const Vec2 start = box.centre();
+  Box2 turned;
+  for (const Vec2& p : control)
+    turned.include(Vec2{dot(main.axis, p - start), dot(across, p - start)});
+  const Vec2 middle = turned.centre();
+  const double along = 0.5 * (turned.hi.x() - turned.lo.x());
+  const double thick = std::max(0.5 * (turned.hi.y() - turned.lo.y()), thinnest * along);
+  const double scale = circumradius * std::sqrt(2.0);  // the square's half diagonal is sqrt 2
+  return make_frame(start + main.axis * middle.x() + across * middle.y(), main.axis, scale * along,
+                    scale * thick);
+}
+
+std::size_t Space::offset(ElementId e) const {
+  return uniform_degree_ >= 0
+             ? e.index() * static_cast<std::size_t>(bernstein::triangle_size(uniform_degree_))
+             : offsets_[e.index()];
+}
+
+std::shared_ptr<const Space> Space::discontinuous(std::shared_ptr<const TriangleMesh> mesh,
+                                                  int degree, Basis basis) {
+  check_mesh(mesh);
+  check_degree(degree, 0);
+  return discontinuous(mesh, std::vector<int>(mesh->element_count(), degree), basis);
+}
+
+std::shared_ptr<const Space> Space::discontinuous(std::shared_ptr<const TriangleMesh> mesh,
+                                                  std::vector<int> degrees, Basis basis) {
+  check_mesh(mesh);
+  std::vector<Frame> frames;
+  if (basis == Basis::physical) {
+    frames.resize(mesh->element_count());
+    parallel_for(frames.size(), [&](std::size_t e) {
+      try {
+        frames[e] = element_frame(mesh->gather(ElementId(e)));
+      } catch (const InputError& error) {
+        throw InputError({{}, 0, "triangle", static_cast<std::int64_t>(e)}, error.message());
+      }
+    });
+    return discontinuous(std::move(mesh), std::move(degrees), std::move(frames));
+  }
+  const std::size_t n = mesh->element_count();
+  if (degrees.size() != n)
+    throw InputError(fmt::format("found {} degrees, expected one for each of the {} elements",
+                                 degrees.size(), n));
+  std::shared_ptr<Space> space(new Space);
+  space->mesh_ = std::move(mesh);
+  for (std::size_t e = 0; e < n; ++e) {
+    check_degree(degrees[e], 0, static_cast<std::int64_t>(e));
+    space->highest_degree_ = std::max(space->highest_degree_, degrees[e]);
+  }
+  const bool uniform = std::all_of(degrees.begin(), degrees.end(),
+                                   [&](int d) { return d == space->highest_degree_; });
+  space->uniform_degree_ = uniform ? space->highest_degree_ : -1;
+  if (uniform) {
+    space->coefficient_count_ =
+        n * static_cast<std::size_t>(bernstein::triangle_size(space->highest_degree_));
+  } else {
+    space->offsets_.reserve(n);
+    for (std::size_t e = 0; e < n; ++e) {
+      space->offsets_.push_back(space->coefficient_count_);
+      space->coefficient_count_ += static_cast<std::size_t>(bernstein::triangle_size(degrees[e]));
+    }
+    space->degrees_ = std::move(degrees);
+  }
+  space->dof_count_ = space->coefficient_count_;
+  return space;
+}
+
+std::shared_ptr<const Space> Space::discontinuous(std::shared_ptr<const TriangleMesh> mesh,
+                                                  std::vector<int> degrees,
+                                                  std::vector<Frame> frames) {
+  check_mesh(mesh);
+  const std::size_t n = mesh->element_count();
+  if (frames.size() != n)
+    throw InputError(
+        fmt::format("found {} frames, expected one for each of the {} elements", frames.size(), n));
+  for (std::size_t e = 0; e < n; ++e) check_frame(frames[e], static_cast<std::int64_t>(e));
+  const std::shared_ptr<const Space> plain =
+      discontinuous(std::move(mesh), std::move(degrees), Basis::reference);
+  std::shared_ptr<Space> space(new Space(*plain));
+  space->basis_ = Basis::physical;
+  space->frames_ = std::move(frames);
+  return space;
+}
+
+std::shared_ptr<const Space> Space::continuous(std::shared_ptr<const TriangleMesh> mesh, int degree,
+                                               Basis basis) {
+  check_mesh(mesh);
+  if (basis == Basis::physical)
+    throw InputError(
+        "a continuous space cannot use the physical basis: it is non-conforming on curved edges; "
+        "use the reference basis, or a discontinuous space");
+  check_degree(degree, 1);
+  const std::shared_ptr<const Space> plain = discontinuous(mesh, degree, Basis::reference);
+  std::shared_ptr<Space> space(new Space(*plain));
+  space->continuity_ = Continuity::continuous;
+
+  const std::size_t per_edge = static_cast<std::size_t>(degree - 1);
+  const std::size_t per_element =
+      per_edge * static_cast<std::size_t>(degree - 2 > 0 ? degree - 2 : 0) / 2;
+  const std::size_t elements = mesh->element_count();
+  const std::size_t edge_start = mesh->vertex_count();
+  const std::size_t inner_start = edge_start + mesh->edge_count() * per_edge;
+  space->dof_count_ = inner_start + elements * per_element;
+  if (space->dof_count_ > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+    throw InputError(
+        fmt::format("a continuous space of {} degrees of freedom is too large, "
+                    "the limit is {}",
+                    space->dof_count_, std::numeric_limits<std::int32_t>::max()));
+  for (std::size_t e = 0; e < mesh->edge_count(); ++e)
+    if (mesh->adjacent(EdgeId(e)).size() > 2)
+      throw InputError({{}, 0, "edge", static_cast<std::int64_t>(e)},
+                       fmt::format("{} elements lie along it, a continuous space needs at most 2 "
+                                   "(no hanging vertices)",
+                                   mesh->adjacent(EdgeId(e)).size()));
+
+  // Vertices are numbered by ascending NodeId.
+  const int g = mesh->degree();
+  std::vector<std::int32_t> vertex(mesh->node_count(), -1);
+  for (std::size_t e = 0; e < elements; ++e)
+    for (int corner = 0; corner < 3; ++corner)
+      vertex[mesh->nodes(
+                     ElementId(e))[static_cast<std::size_t>(bernstein::triangle_corner(g, corner))]
+                 .index()] = 0;
+  std::int32_t next = 0;
+  for (std::int32_t& number : vertex)
+    if (number == 0) number = next++;
+
+  const std::size_t size = static_cast<std::size_t>(bernstein::triangle_size(degree));
+  space->dofs_.resize(elements * size);
+  for (std::size_t e = 0; e < elements; ++e) {
+    const auto nodes = mesh->nodes(ElementId(e));
+    std::int32_t* dofs = space->dofs_.data() + e * size;
+    for (int corner = 0; corner < 3; ++corner)
+      dofs[bernstein::triangle_corner(degree, corner)] =
+          vertex[nodes[static_cast<std::size_t>(bernstein::triangle_corner(g, corner))].index()];
+    const std::array<SideEdge, 3> edges = mesh->edges(ElementId(e));
+    for (int side = 0; side < 3; ++side) {
+      const SideEdge& edge = edges[static_cast<std::size_t>(side)];
+      for (int m = 1; m < degree; ++m) {
+        const int along = edge.reversed ? degree - m : m;
+        dofs[bernstein::triangle_side_index(degree, side, m)] = static_cast<std::int32_t>(
+            edge_start + edge.edge.index() * per_edge + static_cast<std::size_t>(along - 1));
+      }
+    }
+    std::size_t inner = inner_start + e * per_element;
+    for (int k = 1; k < degree; ++k)
+      for (int j = 1; j + k < degree; ++j)
+        dofs[bernstein::triangle_index(degree, j, k)] = static_cast<std::int32_t>(inner++);
+  }
+  return space;
+}
+
+std::span<const std::int32_t> Space::dofs(ElementId e) const {
+  if (dofs_.empty()) return {};
+  const auto size = static_cast<std::size_t>(bernstein::triangle_size(uniform_degree_));
+  return {dofs_.data() + e.index() * size, size};
+}
+
+std::vector<double> Space::expand(std::span<const double> dofs, int components) const {
+  if (components < 1)
+    throw InputError(fmt::format("found {} components, expected at least 1", components));
+  const auto n = static_cast<std::size_t>(components);
+  if (dofs.size() != dof_count_ * n)
+    throw InputError(
+        fmt::format("found {} values, expected {} (degrees of freedom {} x components {})",
+                    dofs.size(), dof_count_ * n, dof_count_, components));
+  if (continuity_ == Continuity::discontinuous) return {dofs.begin(), dofs.end()};
+  std::vector<double> coefficients(coefficient_count_ * n);
+  for (std::size_t i = 0; i < coefficient_count_; ++i)
+    for (std::size_t c = 0; c < n; ++c)
+      coefficients[i * n + c] = dofs[static_cast<std::size_t>(dofs_[i]) * n + c];
+  return coefficients;
+}
+
+}  // namespace bezel
