@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Compiles every public header on its own, with every compiler named (default: g++ and, where present, clang++-14).
+#
+# usage: tools/check_headers.sh [COMPILER...]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+compilers=("$@")
+if [ "${#compilers[@]}" -eq 0 ]; then
+  compilers=(g++)
+  if command -v clang++-14 >/dev/null; then compilers+=(clang++-14); fi
+fi
+export FLAGS="-std=c++20 -fsyntax-only -ffp-contract=off -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror \
+  $(pkg-config --cflags libhwy) -I. $(pkg-config --cflags eigen3 | sed 's/-I/-isystem /g')"
+
+compile() {
+  # Through standard input: a header that is itself the main file draws warnings of its own.
+  # shellcheck disable=SC2086  # FLAGS is a list
+  if ! printf '#include "%s"\n' "$2" | "$1" $FLAGS -x c++ -; then
+    echo "$2: does not compile on its own with $1" >&2
+    return 1
+  fi
+}
+export -f compile
+
+count=0
+for compiler in "${compilers[@]}"; do
+  mapfile -t headers < <(find bezel -name '*.hpp' | sort)
+  printf '%s\n' "${headers[@]}" | xargs -P "$(nproc)" -I{} bash -c 'compile "$@"' _ "$compiler" {}
+  count=${#headers[@]}
+done
+echo "$count headers compile on their own with ${compilers[*]}"
