@@ -20,20 +20,6 @@ namespace bezel::field_detail {
 inline constexpr int largest_size = bernstein::triangle_size(TriangleMesh::max_degree);
 static_assert(TriangleMesh::max_degree >= Space::max_degree);
 
-/// Neumaier's compensated sum: error below 2 u |sum| + n^2 u^2 sum |terms|.
-class CompensatedSum {
- public:
-  void add(double x) {
-    const double t = sum_ + x;
-    carry_ += std::abs(sum_) >= std::abs(x) ? (sum_ - t) + x : (x - t) + sum_;
-    sum_ = t;
-  }
-  double value() const { return sum_ + carry_; }
-
- private:
-  double sum_ = 0.0, carry_ = 0.0;
-};
-
 /// The map of an element at a point: x and the derivatives d/du, d/dv.
 struct MapPoint {
   Vec2 x, du, dv;

@@ -1,0 +1,121 @@
+// Values of a field at points of the plane.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "bezel/base/error.hpp"
+#include "bezel/field/element_kernel.hpp"
+#include "bezel/field/field.hpp"
+#include "bezel/mesh/bvh.hpp"
+
+namespace bezel {
+namespace {
+
+constexpr double tolerance = 1e-12;  // how far below zero a barycentric may be
+constexpr std::size_t chunk = 128;   // points per task
+
+Box2 padded(Box2 box) {
+  // Points within `tolerance` of an edge count as inside: at most that part of the control points'
+  // extent away, with room for the growth of the map just outside the triangle.
+  const double pad = 16.0 * tolerance * box.diameter();
+  box.lo -= Vec2{pad, pad};
+  box.hi += Vec2{pad, pad};
+  return box;
+}
+
+}  // namespace
+
+struct FieldEvaluator::Impl {
+  explicit Impl(Field f) : field(std::move(f)) {
+    std::vector<Box2> boxes(field.mesh().element_count());
+    for (std::size_t e = 0; e < boxes.size(); ++e)
+      boxes[e] = padded(field.mesh().box(ElementId(e)));
+    tree = Bvh(boxes);
+  }
+
+  Place locate(const Vec2& p, std::vector<std::int32_t>& candidates) const {
+    Place place{ElementId{}, {0.0, 0.0, 0.0}};
+    if (!std::isfinite(p.x()) || !std::isfinite(p.y())) return place;
+    Box2 box;
+    box.include(p);
+    candidates.clear();
+    tree.query(box, candidates);
+    std::sort(candidates.begin(), candidates.end());
+    for (const std::int32_t i : candidates) {
+      const ElementId e(i);
+      const field_detail::ElementMap map(field.mesh(), e);
+      const LocateResult found = bezel::locate(map.degree(), map.control(), p, tolerance);
+      if (found.status != Location::inside) continue;
+      place.element = e;
+      place.lambda = found.lambda;
+      break;
+    }
+    return place;
+  }
+
+  /// Calls visit(place, q) for the points of one chunk after another.
+  void for_points(std::span<const Vec2> points, int threads,
+                  const std::function<void(const Place&, std::size_t)>& visit) const {
+    parallel_for((points.size() + chunk - 1) / chunk,
+                 [&](std::size_t task) {
+                   std::vector<std::int32_t> candidates;
+                   for (std::size_t q = task * chunk;
+                        q < std::min(points.size(), (task + 1) * chunk); ++q)
+                     visit(locate(points[q], candidates), q);
+                 },
+                 threads);
+  }
+
+  Field field;
+  Bvh tree;
+};
+
+FieldEvaluator::FieldEvaluator(Field field) : impl_(std::make_unique<Impl>(std::move(field))) {}
+FieldEvaluator::FieldEvaluator(FieldEvaluator&&) noexcept = default;
+FieldEvaluator& FieldEvaluator::operator=(FieldEvaluator&&) noexcept = default;
+FieldEvaluator::~FieldEvaluator() = default;
+
+const Field& FieldEvaluator::field() const {
+  return impl_->field;
+}
+
+FieldEvaluator::Place FieldEvaluator::locate(const Vec2& p) const {
+  std::vector<std::int32_t> candidates;
+  return impl_->locate(p, candidates);
+}
+
+void FieldEvaluator::evaluate(std::span<const Vec2> points, std::span<double> out,
+                              int threads) const {
+  const auto n = static_cast<std::size_t>(impl_->field.components());
+  if (out.size() != points.size() * n)
+    throw InputError(
+        fmt::format("found room for {} values, expected {}", out.size(), points.size() * n));
+  impl_->for_points(points, threads, [&](const Place& place, std::size_t q) {
+    const std::span<double> values = out.subspan(q * n, n);
+    if (place.element.valid())
+      impl_->field.evaluate(place.element, place.lambda, values);
+    else
+      std::fill(values.begin(), values.end(), std::numeric_limits<double>::quiet_NaN());
+  });
+}
+
+void FieldEvaluator::gradient(std::span<const Vec2> points, std::span<double> out,
+                              int threads) const {
+  const std::size_t n = 2 * static_cast<std::size_t>(impl_->field.components());
+  if (out.size() != points.size() * n)
+    throw InputError(
+        fmt::format("found room for {} values, expected {}", out.size(), points.size() * n));
+  impl_->for_points(points, threads, [&](const Place& place, std::size_t q) {
+    const std::span<double> values = out.subspan(q * n, n);
+    if (place.element.valid())
+      impl_->field.gradient(place.element, place.lambda, values);
+    else
+      std::fill(values.begin(), values.end(), std::numeric_limits<double>::quiet_NaN());
+  });
+}
+
+}  // namespace bezel
