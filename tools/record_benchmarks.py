@@ -54,11 +54,13 @@ def build_of(program):
 
 
 def commit():
-    if subprocess.run(["git", "rev-parse", "HEAD"], capture_output=True, check=False, cwd=ROOT).returncode != 0:
-        return "unknown"  # a source archive
+    try:
+        head = output_of("git", "rev-parse", "HEAD")
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"  # a source archive, or a machine without git
     # The results themselves do not make the tree differ from the commit that was measured.
     changed = output_of("git", "status", "--porcelain", "--untracked-files=no", "--", ":!benchmarks/results")
-    return output_of("git", "rev-parse", "HEAD") + ("-modified" if changed else "")
+    return head + ("-modified" if changed else "")
 
 
 def main():
