@@ -8,6 +8,7 @@
 
 #include "bezel/bernstein/index.hpp"
 #include "bezel/bernstein/interval.hpp"
+#include "bezel/bernstein/triangle_kernel.hpp"
 #include "bezel/numeric/vec.hpp"
 
 namespace bezel::bernstein {
@@ -17,10 +18,6 @@ using Lambda = std::array<double, 3>;
 template <class Value>
 Value evaluate(int d, std::span<const Value> b, const Lambda& lambda);
 /// Value and the two derivatives d/du, d/dv where lambda = (1-u-v, u, v).
-template <class Value>
-struct ValueAndGradient {
-  Value value, du, dv;
-};
 template <class Value>
 ValueAndGradient<Value> evaluate_gradient(int d, std::span<const Value> b, const Lambda& lambda);
 /// Many points, structure of arrays; vectorised across points, same bits on every SIMD target.

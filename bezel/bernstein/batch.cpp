@@ -1,0 +1,147 @@
+// Evaluation at many points: SIMD lanes are points, each lane runs the scalar de Casteljau with the
+// same products and sums in the same order, so every target and the scalar functions give the same
+// bits.
+
+#include <algorithm>
+#include <cstddef>
+
+#include "bezel/bernstein/checks.hpp"
+#include "bezel/bernstein/interval_kernel.hpp"
+#include "bezel/bernstein/triangle.hpp"
+#include "bezel/bernstein/triangle_kernel.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bezel/bernstein/batch.cpp"
+#include "hwy/foreach_target.h"
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace bezel::bernstein::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr std::size_t as_size(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+// No fused products: a target without them (SSE4) must give the same bits as one that has them.
+void evaluate_interval(int d, const double* HWY_RESTRICT b, const double* HWY_RESTRICT s,
+                       std::size_t count, double* HWY_RESTRICT out, double* HWY_RESTRICT work) {
+  const hn::ScalableTag<double> tag;
+  const std::size_t lanes = hn::Lanes(tag);
+  std::size_t q = 0;
+  for (; q + lanes <= count; q += lanes) {
+    const auto sv = hn::LoadU(tag, s + q);
+    const auto rv = hn::Sub(hn::Set(tag, 1.0), sv);
+    if (d == 0) {
+      hn::StoreU(hn::Set(tag, b[0]), tag, out + q);
+      continue;
+    }
+    auto low = hn::Set(tag, b[0]);
+    for (int j = 0; j < d; ++j) {
+      const auto high = hn::Set(tag, b[j + 1]);
+      hn::Store(hn::Add(hn::Mul(rv, low), hn::Mul(sv, high)), tag, work + as_size(j) * lanes);
+      low = high;
+    }
+    for (int m = d - 1; m > 0; --m) {
+      low = hn::Load(tag, work);
+      for (int j = 0; j < m; ++j) {
+        const auto high = hn::Load(tag, work + as_size(j + 1) * lanes);
+        hn::Store(hn::Add(hn::Mul(rv, low), hn::Mul(sv, high)), tag, work + as_size(j) * lanes);
+        low = high;
+      }
+    }
+    hn::StoreU(hn::Load(tag, work), tag, out + q);
+  }
+  for (; q < count; ++q) out[q] = kernel::evaluate_unchecked(d, b, s[q]);
+}
+
+void evaluate_triangle(int d, const double* HWY_RESTRICT b, const double* HWY_RESTRICT u,
+                       const double* HWY_RESTRICT v, std::size_t count, double* HWY_RESTRICT out,
+                       double* HWY_RESTRICT work) {
+  const hn::ScalableTag<double> tag;
+  const std::size_t lanes = hn::Lanes(tag);
+  std::size_t q = 0;
+  for (; q + lanes <= count; q += lanes) {
+    const auto l1 = hn::LoadU(tag, u + q);
+    const auto l2 = hn::LoadU(tag, v + q);
+    const auto l0 = hn::Sub(hn::Sub(hn::Set(tag, 1.0), l1), l2);
+    if (d == 0) {
+      hn::StoreU(hn::Set(tag, b[0]), tag, out + q);
+      continue;
+    }
+    const double* lower = b;
+    double* write = work;
+    for (int k = 0; k < d; ++k) {
+      const double* upper = lower + (d - k + 1);
+      auto left = hn::Set(tag, lower[0]);
+      for (int j = 0; j < d - k; ++j) {
+        const auto right = hn::Set(tag, lower[j + 1]);
+        const auto sum = hn::Add(hn::Mul(l0, left), hn::Mul(l1, right));
+        hn::Store(hn::Add(sum, hn::Mul(l2, hn::Set(tag, upper[j]))), tag, write);
+        write += lanes;
+        left = right;
+      }
+      lower = upper;
+    }
+    for (int m = d - 1; m > 0; --m) {
+      const double* low = work;
+      write = work;
+      for (int k = 0; k < m; ++k) {
+        const double* up = low + as_size(m - k + 1) * lanes;
+        auto left = hn::Load(tag, low);
+        for (int j = 0; j < m - k; ++j) {
+          const auto right = hn::Load(tag, low + as_size(j + 1) * lanes);
+          const auto sum = hn::Add(hn::Mul(l0, left), hn::Mul(l1, right));
+          hn::Store(hn::Add(sum, hn::Mul(l2, hn::Load(tag, up + as_size(j) * lanes))), tag, write);
+          write += lanes;
+          left = right;
+        }
+        low = up;
+      }
+    }
+    hn::StoreU(hn::Load(tag, work), tag, out + q);
+  }
+  for (; q < count; ++q)
+    out[q] = kernel::evaluate_unchecked(d, b, Lambda{(1.0 - u[q]) - v[q], u[q], v[q]});
+}
+
+std::size_t lane_count() {
+  return hn::Lanes(hn::ScalableTag<double>());
+}
+
+}  // namespace bezel::bernstein::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "hwy/aligned_allocator.h"
+
+namespace bezel::bernstein {
+
+HWY_EXPORT(evaluate_interval);
+HWY_EXPORT(evaluate_triangle);
+HWY_EXPORT(lane_count);
+
+void evaluate(std::span<const double> b, std::span<const double> s, std::span<double> out) {
+  const int d = checks::interval(b);
+  checks::finite(s, "parameter");
+  checks::size(out.size(), s.size(), "places for values");
+  const std::size_t lanes = HWY_DYNAMIC_DISPATCH(lane_count)();
+  const auto work = hwy::AllocateAligned<double>(b.size() * lanes);
+  HWY_DYNAMIC_DISPATCH(evaluate_interval)(d, b.data(), s.data(), s.size(), out.data(), work.get());
+}
+
+void evaluate(int d, std::span<const double> b, std::span<const double> u,
+              std::span<const double> v, std::span<double> out) {
+  checks::triangle(d, b);
+  checks::size(v.size(), u.size(), "coordinates v");
+  checks::size(out.size(), u.size(), "places for values");
+  checks::finite(u, "coordinate u");
+  checks::finite(v, "coordinate v");
+  const std::size_t lanes = HWY_DYNAMIC_DISPATCH(lane_count)();
+  const auto work = hwy::AllocateAligned<double>(b.size() * lanes);
+  HWY_DYNAMIC_DISPATCH(evaluate_triangle)
+  (d, b.data(), u.data(), v.data(), u.size(), out.data(), work.get());
+}
+
+}  // namespace bezel::bernstein
+#endif  // HWY_ONCE
