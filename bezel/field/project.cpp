@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/IterativeLinearSolvers>
 #include <Eigen/QR>
-#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -14,16 +13,13 @@
 #include "bezel/field/element_kernel.hpp"
 #include "bezel/field/field.hpp"
 #include "bezel/field/formula_kernel.hpp"
+#include "bezel/field/mass_kernel.hpp"
 
 namespace bezel {
 namespace {
 
 using Eigen::MatrixXd;
 using field_detail::ElementMap;
-
-// Sparse Cholesky up to this many degrees of freedom, conjugate gradients above: measured fill-in
-// of planar meshes stays below 1 GB there.
-constexpr std::size_t direct_limit = 300000;
 
 std::size_t size_of(const Space& space, ElementId e) {
   return static_cast<std::size_t>(bernstein::triangle_size(space.degree(e)));
@@ -157,28 +153,6 @@ MatrixXd project_element(const Space& space, ElementId e, const TriangleRule& ru
   return c;
 }
 
-MatrixXd solve_sparse(const Eigen::SparseMatrix<double>& mass, const MatrixXd& rhs) {
-  if (static_cast<std::size_t>(mass.rows()) <= direct_limit) {
-    const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> llt(mass);
-    if (llt.info() != Eigen::Success)
-      throw InputError(
-          "the mass matrix is not positive definite, expected a mesh without inverted or flat "
-          "elements");
-    MatrixXd x = llt.solve(rhs);
-    x += llt.solve(rhs - mass * x);
-    return x;
-  }
-  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> cg(mass);
-  cg.setTolerance(1e-15);
-  cg.setMaxIterations(5000);
-  MatrixXd x = cg.solve(rhs);
-  if (!(cg.error() < 1e-12))
-    throw NumericsError(
-        fmt::format("the mass matrix solve stopped at relative residual {:.1e} after {} iterations",
-                    cg.error(), cg.iterations()));
-  return x;
-}
-
 std::vector<double> project_continuous(const Space& space, const field_detail::RuleTable& rules,
                                        std::span<const Formula> components, int threads) {
   const std::size_t elements = space.mesh()->element_count();
@@ -206,7 +180,7 @@ std::vector<double> project_continuous(const Space& space, const field_detail::R
   Eigen::SparseMatrix<double> matrix(index(space.dof_count()), index(space.dof_count()));
   matrix.setFromTriplets(entries.begin(), entries.end());
   entries = {};
-  const MatrixXd x = solve_sparse(matrix, b);
+  const MatrixXd x = field_detail::solve_mass(matrix, b);
   std::vector<double> dofs(space.dof_count() * n);
   for (std::size_t i = 0; i < space.dof_count(); ++i)
     for (std::size_t k = 0; k < n; ++k) dofs[i * n + k] = x(index(i), index(k));
