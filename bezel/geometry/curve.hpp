@@ -27,11 +27,13 @@ class Curve {
 
 /// A certified simple root: one curve passes through the other (or an end point lies on it).
 struct Crossing {
-  double s, t;                  ///< parameters on the first and second curve, in [0, 1]
+  double s, t;                    ///< parameters on the first and second curve, in [0, 1]
   double s_lo, s_hi, t_lo, t_hi;  ///< boxes known to hold exactly this root
-  double condition;             ///< condition number of the parameters
+  double condition;               ///< condition number of the parameters
   bool certified;
-  Vec2 point_a, point_b;        ///< both curves there
+  Vec2 point_a, point_b;  ///< both curves there
+  int sign;  ///< of cross(a', b'): +1 when b passes from right to left of a as t increases, -1 the
+             ///< other way, 0 when tangential or unknown
 };
 /// The curves touch without being proven to cross.
 struct Tangency {
@@ -50,20 +52,41 @@ struct UnresolvedBox {
 };
 
 struct CurveIntersections {
-  std::vector<Crossing> crossings;    ///< ascending s
-  std::vector<Tangency> tangencies;   ///< ascending s
-  std::vector<Overlap> overlaps;      ///< ascending s
+  std::vector<Crossing> crossings;   ///< ascending s
+  std::vector<Tangency> tangencies;  ///< ascending s
+  std::vector<Overlap> overlaps;     ///< ascending s
   std::vector<UnresolvedBox> unresolved;
 };
 
 struct IntersectOptions {
-  /// Distance (length units of the input) below which the curves count as coincident and an end point counts
-  /// as lying on the other curve. 0: only exact coincidence (to rounding) is reported as Overlap.
+  /// Distance (length units of the input) below which the curves count as coincident and an end
+  /// point counts as lying on the other curve. 0: only exact coincidence (to rounding) is reported
+  /// as Overlap.
   double coincidence_distance = 0.0;
 };
 
 /// Every intersection of two curves. Never a silent miss: what cannot be decided is `unresolved`.
-CurveIntersections intersect(std::span<const Vec2> a, std::span<const Vec2> b, const IntersectOptions& options = {});
+CurveIntersections intersect(std::span<const Vec2> a, std::span<const Vec2> b,
+                             const IntersectOptions& options = {});
+
+/// What `intersect` wants to know of a curve again and again: for callers that meet one curve with
+/// many. The control points are not copied: the span must outlive the cache.
+struct CurveCache {
+  std::span<const Vec2> control;
+  Box2 box;                 ///< of the control points
+  Vec2 chord;               ///< last minus first control point
+  double chord_length;      ///< its length
+  double band_lo, band_hi;  ///< range of cross(chord, c_i - c_0) over the control points
+  double magnitude;         ///< largest |coordinate|
+};
+/// @throws InputError when there are no control points, more than 61, or one is not finite
+CurveCache cache_curve(std::span<const Vec2> control);
+
+/// The same; `out` is cleared and its storage reused.
+void intersect(std::span<const Vec2> a, std::span<const Vec2> b, const IntersectOptions& options,
+               CurveIntersections& out);
+void intersect(const CurveCache& a, const CurveCache& b, const IntersectOptions& options,
+               CurveIntersections& out);
 
 /// The nearest point of a curve to p.
 struct FootPoint {

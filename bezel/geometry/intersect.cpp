@@ -1,0 +1,347 @@
+// Curve-curve intersection: rejection, contacts, then subdivision with a proof of at most one root
+// per box.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bezel/base/error.hpp"
+#include "bezel/geometry/intersect_search.hpp"
+
+namespace bezel {
+
+using geometry_kernel::IntersectSearch;
+
+namespace {
+
+/// The control points of `other` all lie on one side of `curve`'s fat line, further than margin.
+bool outside_fat_line(const CurveCache& curve, const CurveCache& other, double margin) {
+  const Vec2 origin = curve.control.front();
+  const double slack = margin * curve.chord_length;
+  const double lo = curve.band_lo - slack, hi = curve.band_hi + slack;
+  bool below = true, above = true;
+  for (const Vec2& p : other.control) {
+    const double c = cross(curve.chord, p - origin);
+    below = below && c < lo;
+    above = above && c > hi;
+    if (!below && !above) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void intersect(const CurveCache& a, const CurveCache& b, const IntersectOptions& options,
+               CurveIntersections& out) {
+  out.crossings.clear();
+  out.tangencies.clear();
+  out.overlaps.clear();
+  out.unresolved.clear();
+  const double tol = options.coincidence_distance;
+  if (!(tol >= 0) || !std::isfinite(tol))
+    throw InputError("the coincidence distance must be finite and not negative");
+  const double margin = std::max(tol, 0x1p-51 * std::max(a.magnitude, b.magnitude));
+  if (a.box.lo.x() > b.box.hi.x() + margin || b.box.lo.x() > a.box.hi.x() + margin ||
+      a.box.lo.y() > b.box.hi.y() + margin || b.box.lo.y() > a.box.hi.y() + margin)
+    return;
+  // The fat line's own rounding: products of differences, relative to the chord.
+  const double slack = margin + 0x1p-50 * std::max(a.box.diameter(), b.box.diameter());
+  if (outside_fat_line(a, b, slack) || outside_fat_line(b, a, slack)) return;
+  IntersectSearch(a, b, options, out).run();
+}
+
+namespace geometry_kernel {
+
+namespace {
+
+constexpr int max_depth = 50;    // halvings of one curve
+constexpr int max_work = 20000;  // boxes looked at
+
+double extent(const Box2& box) {
+  return std::max(box.hi.x() - box.lo.x(), box.hi.y() - box.lo.y());
+}
+
+/// As outside_fat_line, for pieces.
+bool fat_line_misses(const Vec2* p, int m, const Vec2* q, int n, double margin) {
+  const Vec2 chord = p[m] - p[0];
+  double lo = 0, hi = 0;
+  for (int i = 1; i < m; ++i) {
+    const double c = cross(chord, p[i] - p[0]);
+    lo = c < lo ? c : lo;
+    hi = c > hi ? c : hi;
+  }
+  const double slack = margin * (std::fabs(chord.x()) + std::fabs(chord.y()));
+  lo -= slack;
+  hi += slack;
+  double other_lo = std::numeric_limits<double>::infinity(), other_hi = -other_lo;
+  for (int j = 0; j <= n; ++j) {
+    const double c = cross(chord, q[j] - p[0]);
+    other_lo = c < other_lo ? c : other_lo;
+    other_hi = c > other_hi ? c : other_hi;
+  }
+  return other_hi < lo || other_lo > hi;
+}
+
+}  // namespace
+
+IntersectSearch::IntersectSearch(const CurveCache& a, const CurveCache& b,
+                                 const IntersectOptions& options, CurveIntersections& out)
+    : ca_(a),
+      cb_(b),
+      m_(static_cast<int>(a.control.size()) - 1),
+      n_(static_cast<int>(b.control.size()) - 1),
+      a_(a.control.data()),
+      b_(b.control.data()),
+      out_(out),
+      tol_(options.coincidence_distance),
+      magnitude_(std::max(a.magnitude, b.magnitude)),
+      rounding_(0x1p-51 * magnitude_),
+      tau_(std::max(tol_, rounding_)),
+      margin_(std::max(tol_, 0x1p-53 * magnitude_)),
+      size_(std::min(extent(a.box), extent(b.box))),
+      parallel_depth_(tol_ > 0 ? 4 : 6) {}
+
+void IntersectSearch::run() {
+  find_contacts();
+  if (!find_overlaps() && m_ > 0 && n_ > 0) {
+    descend(a_, 0.0, 1.0, 0, b_, 0.0, 1.0, 0);
+    if (!parallel_.empty()) resolve_parallel();
+  }
+  finish();
+}
+
+bool IntersectSearch::newton(double& s, double& t, double s0, double s1, double t0,
+                             double t1) const {
+  // Relative to a point near the root the residual is accurate to u times the curves' size there.
+  const Vec2 origin = curve_point(m_, a_, s).value;
+  for (int i = 0; i < 12; ++i) {
+    const CurvePoint p = curve_point(m_, a_, s, origin), q = curve_point(n_, b_, t, origin);
+    const Vec2 f = p.value - q.value;
+    const double det = cross(q.derivative, p.derivative);
+    if (det == 0.0) return false;
+    // a' ds - b' dt = -f
+    const double ds = cross(f, q.derivative) / det, dt = cross(f, p.derivative) / det;
+    const double next_s = std::clamp(s + ds, s0, s1), next_t = std::clamp(t + dt, t0, t1);
+    const bool same = next_s == s && next_t == t;
+    s = next_s;
+    t = next_t;
+    if (std::fabs(ds) <= 1e-9 * (s1 - s0) && std::fabs(dt) <= 1e-9 * (t1 - t0)) return true;
+    if (same) return norm(f) <= rounding_;
+  }
+  return false;
+}
+
+/// C = [chord_a, -chord_b]^-1; with F = a(s) - b(t) in the pieces' own parameters, ||I - C F'|| < 1
+/// over the whole box (from the hodographs' control points) makes F one to one there, so it holds
+/// at most one root, and every root is within that norm of C (b_0 - a_0).
+IntersectSearch::Outcome IntersectSearch::transversal(const Vec2* pa, double s0, double s1,
+                                                      const Vec2* pb, double t0, double t1) {
+  const Vec2 chord_a = pa[m_] - pa[0], chord_b = pb[n_] - pb[0];
+  const double det = cross(chord_a, chord_b);
+  const double length_a = std::fabs(chord_a.x()) + std::fabs(chord_a.y());
+  const double length_b = std::fabs(chord_b.x()) + std::fabs(chord_b.y());
+  if (!(std::fabs(det) > 1e-13 * length_a * length_b)) return Outcome::open;
+  if (length_a < 256 * rounding_ || length_b < 256 * rounding_) return Outcome::open;
+  const double inverse = 1.0 / det;
+  double row1_a = 0, row2_a = 0, row1_b = 0, row2_b = 0;
+  for (int i = 0; i < m_; ++i) {
+    const Vec2 e = pa[i + 1] - pa[i];
+    const double x = m_ * cross(e, chord_b) * inverse, y = m_ * cross(e, chord_a) * inverse;
+    row1_a = std::max(row1_a, std::fabs(1.0 - x));
+    row2_a = std::max(row2_a, std::fabs(y));
+  }
+  for (int j = 0; j < n_; ++j) {
+    const Vec2 e = pb[j + 1] - pb[j];
+    const double x = n_ * cross(e, chord_b) * inverse, y = n_ * cross(chord_a, e) * inverse;
+    row1_b = std::max(row1_b, std::fabs(x));
+    row2_b = std::max(row2_b, std::fabs(1.0 - y));
+  }
+  const double q = std::max(row1_a + row1_b, row2_a + row2_b);
+  if (!(q < 0.98)) return Outcome::open;
+  const Vec2 d = pb[0] - pa[0];
+  const double x = cross(d, chord_b) * inverse, y = cross(d, chord_a) * inverse;
+  if (x < -q - 1e-9 || x > 1 + q + 1e-9 || y < -q - 1e-9 || y > 1 + q + 1e-9) return Outcome::none;
+  double s = s0 + (s1 - s0) * std::clamp(x, 0.0, 1.0), t = t0 + (t1 - t0) * std::clamp(y, 0.0, 1.0);
+  if (!newton(s, t, s0, s1, t0, t1)) return Outcome::open;
+  add_crossing(s, t, s0, s1, t0, t1, det > 0 ? 1 : -1, true);
+  return Outcome::one;
+}
+
+void IntersectSearch::descend(const Vec2* pa, double s0, double s1, int depth_a, const Vec2* pb,
+                              double t0, double t1, int depth_b) {
+  if (++work_ > max_work) {
+    unresolved(s0, s1, t0, t1, "too many boxes");
+    return;
+  }
+  const Box2 box_a = control_box(m_, pa), box_b = control_box(n_, pb);
+  if (box_a.lo.x() > box_b.hi.x() + margin_ || box_b.lo.x() > box_a.hi.x() + margin_ ||
+      box_a.lo.y() > box_b.hi.y() + margin_ || box_b.lo.y() > box_a.hi.y() + margin_)
+    return;
+  if (depth_a + depth_b > 0 &&
+      (fat_line_misses(pa, m_, pb, n_, margin_) || fat_line_misses(pb, n_, pa, m_, margin_)))
+    return;
+  if (transversal(pa, s0, s1, pb, t0, t1) != Outcome::open) return;
+  const double extent_a = extent(box_a), extent_b = extent(box_b);
+  if (depth_a >= parallel_depth_ && depth_b >= parallel_depth_ && graph_like(pa, pb)) {
+    parallel_.push_back({s0, s1, t0, t1});
+    return;
+  }
+  const double smallest = 4 * tau_;
+  if ((extent_a <= smallest || depth_a >= max_depth) &&
+      (extent_b <= smallest || depth_b >= max_depth)) {
+    unresolved(s0, s1, t0, t1, "the curves meet where one of them is singular");
+    return;
+  }
+  const bool split_a = (extent_a >= 0.5 * extent_b && depth_a < max_depth) || depth_b >= max_depth;
+  const bool split_b = (extent_b >= 0.5 * extent_a && depth_b < max_depth) || depth_a >= max_depth;
+  const auto children = [&](auto& halves_a, auto& halves_b) {
+    const double s = 0.5 * (s0 + s1), t = 0.5 * (t0 + t1);
+    Vec2 *a0 = halves_a.data(), *a1 = a0 + m_ + 1, *b0 = halves_b.data(), *b1 = b0 + n_ + 1;
+    if (split_a) halve(m_, pa, a0, a1);
+    if (split_b) halve(n_, pb, b0, b1);
+    if (split_a && split_b) {
+      descend(a0, s0, s, depth_a + 1, b0, t0, t, depth_b + 1);
+      descend(a0, s0, s, depth_a + 1, b1, t, t1, depth_b + 1);
+      descend(a1, s, s1, depth_a + 1, b0, t0, t, depth_b + 1);
+      descend(a1, s, s1, depth_a + 1, b1, t, t1, depth_b + 1);
+    } else if (split_a) {
+      descend(a0, s0, s, depth_a + 1, pb, t0, t1, depth_b);
+      descend(a1, s, s1, depth_a + 1, pb, t0, t1, depth_b);
+    } else {
+      descend(pa, s0, s1, depth_a, b0, t0, t, depth_b + 1);
+      descend(pa, s0, s1, depth_a, b1, t, t1, depth_b + 1);
+    }
+  };
+  if (m_ <= 3 && n_ <= 3) {
+    std::array<Vec2, 8> halves_a, halves_b;
+    children(halves_a, halves_b);
+  } else if (m_ <= 11 && n_ <= 11) {
+    std::array<Vec2, 24> halves_a, halves_b;
+    children(halves_a, halves_b);
+  } else {
+    std::array<Vec2, 2 * max_curve_points> halves_a, halves_b;
+    children(halves_a, halves_b);
+  }
+}
+
+void IntersectSearch::add_crossing(double s, double t, double s0, double s1, double t0, double t1,
+                                   int sign, bool certified) {
+  const CurvePoint p = curve_point(m_, a_, s), q = curve_point(n_, b_, t);
+  const double speed_a = norm(p.derivative), speed_b = norm(q.derivative);
+  const double sine = std::fabs(cross(p.derivative, q.derivative)) / (speed_a * speed_b);
+  const double safe_sine = sine > 1e-300 ? sine : 1e-300;
+  // Near an end point that lies on the other curve the two are one event: an end point within tau
+  // of a curve crossed at this angle is within tau / sine of the crossing.
+  for (int i = 0; i < contact_count_; ++i) {
+    Contact& c = contacts_[static_cast<std::size_t>(i)];
+    const double reach = std::min(4 * tau_ / safe_sine, 0.05 * size_) + 2 * tau_;
+    if (std::fabs(s - c.s) * speed_a <= reach && std::fabs(t - c.t) * speed_b <= reach) {
+      c.sign += sign;
+      c.certified = c.certified || certified;
+      return;
+    }
+  }
+  // Neighbouring boxes both hold a root on their common border; the same simple root has the same
+  // sign.
+  const double error = 8 * rounding_ / safe_sine;
+  for (const Crossing& c : out_.crossings)
+    if (c.sign == sign && std::fabs(s - c.s) * speed_a <= error &&
+        std::fabs(t - c.t) * speed_b <= error)
+      return;
+  Crossing c{};
+  c.s = s;
+  c.t = t;
+  c.s_lo = s0;
+  c.s_hi = s1;
+  c.t_lo = t0;
+  c.t_hi = t1;
+  c.sign = sign;
+  c.certified = certified;
+  c.point_a = p.value;
+  c.point_b = q.value;
+  c.condition = magnitude_ / (std::min(speed_a, speed_b) * safe_sine);
+  out_.crossings.push_back(c);
+}
+
+void IntersectSearch::unresolved(double s0, double s1, double t0, double t1, const char* reason) {
+  // Adjacent boxes grow into one.
+  for (UnresolvedBox& box : out_.unresolved)
+    if (s0 <= box.s_hi && box.s_lo <= s1 && t0 <= box.t_hi && box.t_lo <= t1) {
+      box.s_lo = std::min(box.s_lo, s0);
+      box.s_hi = std::max(box.s_hi, s1);
+      box.t_lo = std::min(box.t_lo, t0);
+      box.t_hi = std::max(box.t_hi, t1);
+      return;
+    }
+  out_.unresolved.push_back({s0, s1, t0, t1, reason});
+}
+
+void IntersectSearch::finish() {
+  auto& overlaps = out_.overlaps;
+  if (overlaps.size() > 1)
+    std::sort(overlaps.begin(), overlaps.end(),
+              [](const Overlap& p, const Overlap& q) { return p.s0 < q.s0; });
+  const auto covered = [&](double s, double t, double s_slack, double t_slack) {
+    return std::any_of(overlaps.begin(), overlaps.end(), [&](const Overlap& o) {
+      return s >= o.s0 - s_slack && s <= o.s1 + s_slack && t >= std::min(o.t0, o.t1) - t_slack &&
+             t <= std::max(o.t0, o.t1) + t_slack;
+    });
+  };
+  if (!overlaps.empty()) {
+    const double s_slack = 16 * tau_ / std::max(extent(ca_.box), tau_);
+    const double t_slack = 16 * tau_ / std::max(extent(cb_.box), tau_);
+    std::erase_if(out_.crossings,
+                  [&](const Crossing& c) { return covered(c.s, c.t, s_slack, t_slack); });
+    std::erase_if(out_.tangencies,
+                  [&](const Tangency& c) { return covered(c.s, c.t, s_slack, t_slack); });
+    std::erase_if(out_.unresolved, [&](const UnresolvedBox& c) {
+      return covered(c.s_lo, c.t_lo, s_slack, t_slack) && covered(c.s_hi, c.t_hi, s_slack, t_slack);
+    });
+    for (int i = 0; i < contact_count_; ++i) {
+      Contact& c = contacts_[static_cast<std::size_t>(i)];
+      c.in_overlap = covered(c.s, c.t, s_slack, t_slack);
+    }
+  }
+  // What stayed open only around an end point on the other curve is that end point.
+  if (!out_.unresolved.empty())
+    std::erase_if(out_.unresolved, [&](const UnresolvedBox& box) {
+      for (int i = 0; i < contact_count_; ++i) {
+        const Contact& c = contacts_[static_cast<std::size_t>(i)];
+        const double slack = 1e-6;
+        if (c.s >= box.s_lo - slack && c.s <= box.s_hi + slack && c.t >= box.t_lo - slack &&
+            c.t <= box.t_hi + slack && box.s_hi - box.s_lo <= slack && box.t_hi - box.t_lo <= slack)
+          return true;
+      }
+      return false;
+    });
+  for (int i = 0; i < contact_count_; ++i) {
+    const Contact& contact = contacts_[static_cast<std::size_t>(i)];
+    if (contact.in_overlap) continue;
+    const CurvePoint p = curve_point(m_, a_, contact.s), q = curve_point(n_, b_, contact.t);
+    const double speeds = norm(p.derivative) * norm(q.derivative);
+    const double turn = cross(p.derivative, q.derivative);
+    Crossing c{};
+    c.s = c.s_lo = c.s_hi = contact.s;
+    c.t = c.t_lo = c.t_hi = contact.t;
+    c.point_a = contact.s == 0.0 ? a_[0] : contact.s == 1.0 ? a_[m_] : p.value;
+    c.point_b = contact.t == 0.0 ? b_[0] : contact.t == 1.0 ? b_[n_] : q.value;
+    c.certified = contact.certified;
+    c.sign = contact.sign > 0 ? 1 : contact.sign < 0 ? -1 : 0;
+    if (c.sign == 0 && std::fabs(turn) > 1e-6 * speeds) c.sign = turn > 0 ? 1 : -1;
+    c.condition =
+        speeds > 0 && turn != 0
+            ? magnitude_ * std::max(norm(p.derivative), norm(q.derivative)) / std::fabs(turn)
+            : std::numeric_limits<double>::infinity();
+    out_.crossings.push_back(c);
+  }
+  std::sort(out_.crossings.begin(), out_.crossings.end(), [](const Crossing& p, const Crossing& q) {
+    return p.s != q.s ? p.s < q.s : p.t < q.t;
+  });
+  if (out_.tangencies.size() > 1)
+    std::sort(
+        out_.tangencies.begin(), out_.tangencies.end(),
+        [](const Tangency& p, const Tangency& q) { return p.s != q.s ? p.s < q.s : p.t < q.t; });
+}
+
+}  // namespace geometry_kernel
+}  // namespace bezel

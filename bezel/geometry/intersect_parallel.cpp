@@ -1,0 +1,560 @@
+// Nearly parallel pieces: over a common direction d both are graphs, and everything about them is
+// in the signed distance delta(s) from a(s) to b. It is sampled (with b found by Newton),
+// interpolated by polynomials whose error is measured at further points, and read off by
+// subdivision: signs, zeros, and the intervals where it stays within the coincidence distance.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bezel/geometry/intersect_search.hpp"
+#include "bezel/numeric/double_double.hpp"
+
+namespace bezel::geometry_kernel {
+namespace {
+
+constexpr int degree = 8;  // of the interpolants
+constexpr std::size_t nodes = degree + 1;
+using Values = std::array<double, nodes>;
+
+/// Chebyshev points of the second kind on [0, 1].
+Values chebyshev_points() {
+  Values x{};
+  for (std::size_t i = 0; i < nodes; ++i)
+    x[i] = 0.5 - 0.5 * std::cos(M_PI * static_cast<double>(i) / degree);
+  return x;
+}
+
+struct Matrix {
+  std::array<std::array<double, nodes>, nodes> m;
+};
+
+/// From values at the points to Bernstein coefficients: inverse of the Bernstein-Vandermonde
+/// matrix.
+Matrix interpolation_matrix(const Values& x) {
+  std::array<std::array<double, 2 * nodes>, nodes> w{};
+  for (std::size_t i = 0; i < nodes; ++i) {
+    double binomial = 1;
+    for (std::size_t j = 0; j < nodes; ++j) {
+      double value = binomial;
+      for (std::size_t k = 0; k < j; ++k) value *= x[i];
+      for (std::size_t k = j; k < degree; ++k) value *= 1.0 - x[i];
+      w[i][j] = value;
+      binomial = binomial * static_cast<double>(degree - j) / static_cast<double>(j + 1);
+    }
+    w[i][nodes + i] = 1.0;
+  }
+  for (std::size_t c = 0; c < nodes; ++c) {
+    std::size_t pivot = c;
+    for (std::size_t i = c + 1; i < nodes; ++i)
+      if (std::fabs(w[i][c]) > std::fabs(w[pivot][c])) pivot = i;
+    std::swap(w[c], w[pivot]);
+    const double scale = 1.0 / w[c][c];
+    for (double& v : w[c]) v *= scale;
+    for (std::size_t i = 0; i < nodes; ++i) {
+      const double f = w[i][c];
+      if (i == c || f == 0.0) continue;
+      for (std::size_t j = 0; j < 2 * nodes; ++j) w[i][j] -= f * w[c][j];
+    }
+  }
+  Matrix result;
+  for (std::size_t i = 0; i < nodes; ++i)
+    for (std::size_t j = 0; j < nodes; ++j) result.m[i][j] = w[i][nodes + j];
+  return result;
+}
+
+double evaluate(const Values& c, double x) {
+  Values q = c;
+  for (std::size_t d = degree; d > 0; --d)
+    for (std::size_t i = 0; i < d; ++i) q[i] = (1.0 - x) * q[i] + x * q[i + 1];
+  return q[0];
+}
+
+struct Piece {
+  double s0, s1;
+  Values c;      // Bernstein coefficients of delta
+  double noise;  // measured error of the interpolant, and rounding
+};
+
+/// delta is above +threshold, within it, or below -threshold on [s0, s1].
+struct Segment {
+  double s0, s1;
+  int state;
+};
+
+void append(std::vector<Segment>& list, double s0, double s1, int state) {
+  if (!list.empty() && list.back().state == state && list.back().s1 == s0)
+    list.back().s1 = s1;
+  else
+    list.push_back({s0, s1, state});
+}
+
+void classify(const Values& c, double threshold, double s0, double s1, int depth,
+              std::vector<Segment>& list) {
+  const auto [least, most] = std::minmax_element(c.begin(), c.end());
+  int state = 0;
+  if (*least > threshold)
+    state = 1;
+  else if (*most < -threshold)
+    state = -1;
+  else if (depth > 0 && !(*most <= threshold && *least >= -threshold)) {
+    Values left, right = c;
+    left[0] = right[0];
+    for (std::size_t r = 1; r < nodes; ++r) {
+      for (std::size_t i = 0; i + r < nodes; ++i) right[i] = 0.5 * (right[i] + right[i + 1]);
+      left[r] = right[0];
+    }
+    const double s = 0.5 * (s0 + s1);
+    if (s > s0 && s < s1) {
+      classify(left, threshold, s0, s, depth - 1, list);
+      classify(right, threshold, s, s1, depth - 1, list);
+      return;
+    }
+  }
+  append(list, s0, s1, state);
+}
+
+using Exact = Vec<2, DoubleDouble>;
+
+Exact exact_point(int d, const Vec2* b, double s) {
+  std::array<Exact, max_curve_points> q;
+  for (int i = 0; i <= d; ++i)
+    q[static_cast<std::size_t>(i)] = Exact{{DoubleDouble(b[i].x()), DoubleDouble(b[i].y())}};
+  const DoubleDouble t(s), r = DoubleDouble(1.0) - t;
+  for (int k = d; k > 0; --k)
+    for (int i = 0; i < k; ++i) {
+      const auto j = static_cast<std::size_t>(i);
+      for (int x = 0; x < 2; ++x) q[j][x] = r * q[j][x] + t * q[j + 1][x];
+    }
+  return q[0];
+}
+
+}  // namespace
+
+/// The signed distance of b from a over [s0, s1] x [t0, t1], and what follows from it.
+class ParallelPair {
+ public:
+  ParallelPair(IntersectSearch& search, double s0, double s1, double t0, double t1)
+      : f_(search), s0_(s0), s1_(s1), t0_(t0), t1_(t1), exact_(search.tol_ == 0.0) {
+    const Vec2 from = curve_point(f_.m_, f_.a_, s0).value, to = curve_point(f_.m_, f_.a_, s1).value;
+    const Vec2 chord = to - from;
+    d_ = (1.0 / norm(chord)) * chord;
+    const Vec2 chord_b = curve_point(f_.n_, f_.b_, t1).value - curve_point(f_.n_, f_.b_, t0).value;
+    reversed_ = dot(d_, chord_b) < 0;
+  }
+
+  void run() {
+    if (!clip()) return;
+    points_ = chebyshev_points();
+    matrix_ = interpolation_matrix(points_);
+    interpolate(s0_, s1_, 10);
+    if (exact_)
+      read_exact();
+    else
+      read_band();
+  }
+
+ private:
+  struct Sample {
+    double delta, t, slope_a, slope_b;
+  };
+
+  /// b's parameter opposite s, along the normal of d.
+  double opposite(double s) const {
+    const Vec2 origin = curve_point(f_.m_, f_.a_, s).value;
+    double lo = t0_, hi = t1_;  // d . (b - origin) rises from lo to hi, or falls when reversed
+    double t = last_t_ > t0_ && last_t_ < t1_ ? last_t_ : 0.5 * (t0_ + t1_);
+    for (int i = 0; i < 60; ++i) {
+      const CurvePoint q = curve_point(f_.n_, f_.b_, t, origin);
+      const double g = dot(d_, q.value), slope = dot(d_, q.derivative);
+      if (g == 0.0) break;
+      if ((g > 0) != reversed_)
+        hi = t;
+      else
+        lo = t;
+      double next = slope != 0 ? t - g / slope : 0.5 * (lo + hi);
+      if (!(next >= lo && next <= hi)) next = 0.5 * (lo + hi);
+      const double step = std::fabs(next - t);
+      t = next;
+      if (step <= 2e-16 * (t1_ - t0_) || (i > 4 && step <= 1e-14 * (t1_ - t0_))) break;
+    }
+    last_t_ = t;
+    return t;
+  }
+
+  /// Restricts [s0, s1] to where b is opposite; notes whether the ends are ends of b.
+  bool clip() {
+    const Vec2 b0 = curve_point(f_.n_, f_.b_, reversed_ ? t1_ : t0_).value;
+    const Vec2 b1 = curve_point(f_.n_, f_.b_, reversed_ ? t0_ : t1_).value;
+    const auto solve = [&](const Vec2& target) {  // d . (a(s) - target) = 0, rising
+      double lo = s0_, hi = s1_, s = 0.5 * (lo + hi);
+      for (int i = 0; i < 60; ++i) {
+        const CurvePoint p = curve_point(f_.m_, f_.a_, s, target);
+        const double g = dot(d_, p.value), slope = dot(d_, p.derivative);
+        if (g == 0.0) break;
+        (g > 0 ? hi : lo) = s;
+        double next = slope != 0 ? s - g / slope : 0.5 * (lo + hi);
+        if (!(next >= lo && next <= hi)) next = 0.5 * (lo + hi);
+        const double step = std::fabs(next - s);
+        s = next;
+        if (step <= 2e-16) break;
+      }
+      return s;
+    };
+    double lo = s0_, hi = s1_;
+    if (dot(d_, curve_point(f_.m_, f_.a_, s0_, b0).value) < 0) {
+      if (dot(d_, curve_point(f_.m_, f_.a_, s1_, b0).value) <= 0) return false;
+      lo = solve(b0);
+      lo_is_b_ = true;
+    }
+    if (dot(d_, curve_point(f_.m_, f_.a_, s1_, b1).value) > 0) {
+      if (dot(d_, curve_point(f_.m_, f_.a_, s0_, b1).value) >= 0) return false;
+      hi = solve(b1);
+      hi_is_b_ = true;
+    }
+    if (!(lo < hi)) return false;
+    s0_ = lo;
+    s1_ = hi;
+    return true;
+  }
+
+  Sample sample(double s) const {
+    const CurvePoint p = curve_point(f_.m_, f_.a_, s);
+    const double t = opposite(s);
+    const CurvePoint q = curve_point(f_.n_, f_.b_, t, p.value);
+    const double along_a = dot(d_, p.derivative), along_b = dot(d_, q.derivative);
+    const double slope_a = along_a != 0 ? cross(d_, p.derivative) / along_a : 0.0;
+    const double slope_b = along_b != 0 ? cross(d_, q.derivative) / along_b : 0.0;
+    double delta = 0;
+    if (exact_) {
+      const Exact x = exact_point(f_.m_, f_.a_, s), y = exact_point(f_.n_, f_.b_, t);
+      const DoubleDouble wx = y[0] - x[0], wy = y[1] - x[1];
+      const DoubleDouble across = DoubleDouble(d_.x()) * wy - DoubleDouble(d_.y()) * wx;
+      const DoubleDouble along = DoubleDouble(d_.x()) * wx + DoubleDouble(d_.y()) * wy;
+      delta = (across - along * DoubleDouble(slope_b)).hi;
+    } else {
+      delta = cross(d_, q.value) - dot(d_, q.value) * slope_b;
+    }
+    return {delta / std::sqrt(1.0 + slope_a * slope_a), t, slope_a, slope_b};
+  }
+
+  void interpolate(double s0, double s1, int depth) {
+    Values v{};
+    const double h = s1 - s0;
+    double largest = 0;
+    for (std::size_t i = 0; i < nodes; ++i) {
+      v[i] = sample(s0 + h * points_[i]).delta;
+      largest = std::max(largest, std::fabs(v[i]));
+    }
+    Piece piece{s0, s1, {}, 0};
+    for (std::size_t i = 0; i < nodes; ++i) {
+      double sum = 0;
+      for (std::size_t j = 0; j < nodes; ++j) sum += matrix_.m[i][j] * v[j];
+      piece.c[i] = sum;
+    }
+    piece.c[0] = v[0];
+    piece.c[degree] = v[degree];
+    double error = 0;
+    for (const double x : {0.0123, 0.2718, 0.5772, 0.9877})
+      error = std::max(error, std::fabs(evaluate(piece.c, x) - sample(s0 + h * x).delta));
+    const double allowed =
+        exact_ ? 1e-12 * largest + 1e-28 * f_.magnitude_ : std::max(f_.tau_ / 32, f_.rounding_);
+    // Where delta stays far from zero its exact shape does not matter.
+    const auto [least, most] = std::minmax_element(piece.c.begin(), piece.c.end());
+    const double away = std::max(*least, -*most);
+    const bool clear = away > f_.tau_ + 16 * error && away > 0;
+    piece.noise = 4 * error + 1e-13 * largest + (exact_ ? 1e-29 : 1e-16) * f_.magnitude_;
+    if (error <= allowed || clear || depth == 0 || !(h > 1e-12)) {
+      if (!(error <= allowed) && !clear)
+        f_.unresolved(s0, s1, std::min(opposite(s0), opposite(s1)),
+                      std::max(opposite(s0), opposite(s1)),
+                      "the distance between nearly parallel pieces is not smooth");
+      pieces_.push_back(piece);
+      return;
+    }
+    const double middle = 0.5 * (s0 + s1);
+    interpolate(s0, middle, depth - 1);
+    interpolate(middle, s1, depth - 1);
+  }
+
+  double delta_at(double s) const {
+    for (const Piece& p : pieces_)
+      if (s <= p.s1) return evaluate(p.c, (s - p.s0) / (p.s1 - p.s0));
+    return pieces_.back().c[degree];
+  }
+
+  /// A zero of the interpolant between s0 and s1, where it has different signs.
+  double zero(double s0, double s1) const {
+    const bool rising = delta_at(s1) > 0;
+    for (int i = 0; i < 60; ++i) {
+      const double s = 0.5 * (s0 + s1);
+      if (!(s > s0 && s < s1)) break;
+      ((delta_at(s) > 0) == rising ? s1 : s0) = s;
+    }
+    return 0.5 * (s0 + s1);
+  }
+
+  /// The same from the distance itself, when the interpolant's noise leaves a wide interval
+  /// (contact of order 3).
+  double exact_zero(double s0, double s1) const {
+    const double v0 = sample(s0).delta, v1 = sample(s1).delta;
+    if (!(v0 * v1 < 0)) return zero(s0, s1);
+    for (int i = 0; i < 60; ++i) {
+      const double s = 0.5 * (s0 + s1);
+      if (!(s > s0 && s < s1)) break;
+      ((sample(s).delta > 0) == (v1 > 0) ? s1 : s0) = s;
+    }
+    return 0.5 * (s0 + s1);
+  }
+
+  Contact* contact_in(double s0, double s1, double t0, double t1, int& count) const {
+    Contact* found = nullptr;
+    count = 0;
+    for (int i = 0; i < f_.contact_count_; ++i) {
+      Contact& c = f_.contacts_[static_cast<std::size_t>(i)];
+      if (c.s >= s0 && c.s <= s1 && c.t >= t0 && c.t <= t1) {
+        found = &c;
+        ++count;
+      }
+    }
+    return found;
+  }
+
+  /// One event in [s0, s1]: the states before and after are -1, +1, or 0 when unknown.
+  void event(double s0, double s1, int before, int after) {
+    const double ta = opposite(s0), tb = opposite(s1);
+    const Vec2 middle_speed = curve_point(f_.m_, f_.a_, 0.5 * (s0 + s1)).derivative;
+    const double pad_s = 4 * f_.tau_ / std::max(norm(middle_speed), f_.tau_) + 1e-12;
+    const double pad_t =
+        4 * f_.tau_ / std::max(norm(curve_point(f_.n_, f_.b_, ta).derivative), f_.tau_) + 1e-12;
+    int count = 0;
+    Contact* contact = contact_in(s0 - pad_s, s1 + pad_s, std::min(ta, tb) - pad_t,
+                                  std::max(ta, tb) + pad_t, count);
+    const int sign = before * after < 0 ? (reversed_ ? -after : after) : 0;
+    if (contact != nullptr) {
+      if (count == 1 && contact->sign == 0) contact->sign = sign;
+      return;
+    }
+    if (before * after < 0) {
+      const double s = exact_ && s1 - s0 > 1e-12 ? exact_zero(s0, s1) : zero(s0, s1);
+      f_.add_crossing(s, opposite(s), s0, s1, std::min(ta, tb), std::max(ta, tb), sign, false);
+      return;
+    }
+    // Touching: the smallest distance in between.
+    double best_s = 0.5 * (s0 + s1), best = std::numeric_limits<double>::infinity();
+    double lo = s0, hi = s1;
+    for (int round = 0; round < 24; ++round) {
+      const double h = (hi - lo) / 8;
+      for (int i = 0; i <= 8; ++i) {
+        const double s = lo + h * i, v = std::fabs(delta_at(s));
+        if (v < best) {
+          best = v;
+          best_s = s;
+        }
+      }
+      lo = std::max(s0, best_s - h);
+      hi = std::min(s1, best_s + h);
+    }
+    const bool at_border = (before == 0 && best_s <= s0) || (after == 0 && best_s >= s1);
+    const double t = opposite(best_s);
+    if (before == 0 || after == 0) {
+      // At a border of these pieces the rest belongs to a neighbour, where the curves cross or
+      // part: known already when a crossing is near.
+      const Vec2 p = curve_point(f_.m_, f_.a_, best_s).value;
+      for (const Crossing& c : f_.out_.crossings)
+        if (norm(c.point_a - p) <= 64 * std::sqrt(f_.tau_ * f_.size_)) return;
+      if (at_border && best > 0.25 * f_.tau_) return;
+    }
+    for (const Tangency& c : f_.out_.tangencies)
+      if (std::fabs(c.s - best_s) <= 1e-6 && std::fabs(c.t - t) <= 1e-6) return;
+    f_.out_.tangencies.push_back({best_s, t, 0});
+  }
+
+  void read_band() {
+    std::vector<Segment> list;
+    for (const Piece& p : pieces_) classify(p.c, f_.tau_, p.s0, p.s1, 48, list);
+    const double touch = 64 * std::sqrt(f_.tau_ * f_.size_);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const Segment& g = list[i];
+      if (g.state != 0) {
+        if (i > 0 && list[i - 1].state != 0) event(g.s0, g.s0, list[i - 1].state, g.state);
+        continue;
+      }
+      const int before = i > 0 ? list[i - 1].state : 0,
+                after = i + 1 < list.size() ? list[i + 1].state : 0;
+      const Vec2 p = curve_point(f_.m_, f_.a_, g.s0).value,
+                 q = curve_point(f_.m_, f_.a_, g.s1).value;
+      if (norm(q - p) <= touch)
+        event(g.s0, g.s1, before, after);
+      else
+        overlap(g, i == 0, i + 1 == list.size());
+    }
+  }
+
+  void overlap(const Segment& g, bool first, bool last) {
+    Overlap o{g.s0, g.s1, opposite(g.s0), opposite(g.s1), 0};
+    if (first && lo_is_b_) o.t0 = reversed_ ? t1_ : t0_;
+    if (last && hi_is_b_) o.t1 = reversed_ ? t0_ : t1_;
+    // Ends that are end points of a curve have their parameters from the contacts.
+    const double near = 64 * std::sqrt(f_.tau_ * f_.size_);
+    const auto snap = [&](double& s, double& t) {
+      const Vec2 p = curve_point(f_.m_, f_.a_, s).value;
+      double best = near;
+      double bs = s, bt = t;
+      for (int i = 0; i < f_.contact_count_; ++i) {
+        const Contact& c = f_.contacts_[static_cast<std::size_t>(i)];
+        const double distance = norm(curve_point(f_.m_, f_.a_, c.s).value - p) +
+                                norm(curve_point(f_.n_, f_.b_, c.t).value - p);
+        if (distance < best) {
+          best = distance;
+          bs = c.s;
+          bt = c.t;
+        }
+      }
+      s = bs;
+      t = bt;
+    };
+    snap(o.s0, o.t0);
+    snap(o.s1, o.t1);
+    for (const Piece& p : pieces_) {
+      if (p.s1 < g.s0 || p.s0 > g.s1) continue;
+      for (int i = 0; i <= 8; ++i) {
+        const double s = p.s0 + (p.s1 - p.s0) * i / 8;
+        if (s >= g.s0 && s <= g.s1) o.gap = std::max(o.gap, std::fabs(delta_at(s)));
+      }
+    }
+    if (!(o.s0 < o.s1)) return;
+    // Join with what a neighbouring cluster, or the comparison between contacts, found.
+    for (Overlap& k : f_.out_.overlaps) {
+      const bool same_way = (k.t0 < k.t1) == (o.t0 < o.t1);
+      const double slack = 1e-9;
+      const bool t_touch = std::min(o.t0, o.t1) <= std::max(k.t0, k.t1) + slack &&
+                           std::min(k.t0, k.t1) <= std::max(o.t0, o.t1) + slack;
+      if (!same_way || o.s0 > k.s1 + slack || k.s0 > o.s1 + slack || !t_touch) continue;
+      if (o.s0 < k.s0) {
+        k.s0 = o.s0;
+        k.t0 = o.t0;
+      }
+      if (o.s1 > k.s1) {
+        k.s1 = o.s1;
+        k.t1 = o.t1;
+      }
+      k.gap = std::max(k.gap, o.gap);
+      return;
+    }
+    f_.out_.overlaps.push_back(o);
+  }
+
+  /// Coincidence distance 0: overlaps are those between contacts; here only signs count.
+  void read_exact() {
+    std::vector<Segment> list;
+    for (const Piece& p : pieces_) classify(p.c, p.noise, p.s0, p.s1, 48, list);
+    bool any = false;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const Segment& g = list[i];
+      const int before = i > 0 ? list[i - 1].state : 0,
+                after = i + 1 < list.size() ? list[i + 1].state : 0;
+      if (g.state == 0) {
+        event(g.s0, g.s1, before, after);
+        any = true;
+      } else if (i > 0 && list[i - 1].state != 0) {
+        event(g.s0, g.s0, before, g.state);
+        any = true;
+      }
+    }
+    if (any) return;
+    // No zero, but closer than the coordinates can tell: touching to rounding.
+    std::vector<Segment> close;
+    for (const Piece& p : pieces_) classify(p.c, 0.25 * f_.rounding_, p.s0, p.s1, 48, close);
+    for (std::size_t i = 0; i < close.size(); ++i)
+      if (close[i].state == 0)
+        event(close[i].s0, close[i].s1, i > 0 ? close[i - 1].state : 0,
+              i + 1 < close.size() ? close[i + 1].state : 0);
+  }
+
+  IntersectSearch& f_;
+  double s0_, s1_, t0_, t1_;
+  bool exact_;
+  bool reversed_ = false, lo_is_b_ = false, hi_is_b_ = false;
+  Vec2 d_;
+  mutable double last_t_ = -1;
+  Values points_{};
+  Matrix matrix_{};
+  std::vector<Piece> pieces_;
+};
+
+/// All hodograph vectors of both pieces within 40 degrees of one line.
+bool IntersectSearch::graph_like(const Vec2* pa, const Vec2* pb) const {
+  const Vec2 chord = pa[m_] - pa[0];
+  const double length = norm(chord);
+  if (!(length > 64 * rounding_)) return false;
+  for (int i = 0; i < m_; ++i) {
+    const Vec2 e = pa[i + 1] - pa[i];
+    if (!(dot(chord, e) >= 0.77 * length * norm(e) && (e.x() != 0 || e.y() != 0))) return false;
+  }
+  const double way = dot(chord, pb[n_] - pb[0]) >= 0 ? 1.0 : -1.0;
+  for (int j = 0; j < n_; ++j) {
+    const Vec2 e = pb[j + 1] - pb[j];
+    if (!(way * dot(chord, e) >= 0.77 * length * norm(e) && (e.x() != 0 || e.y() != 0)))
+      return false;
+  }
+  return true;
+}
+
+void IntersectSearch::analyse(double s0, double s1, double t0, double t1) {
+  ParallelPair(*this, s0, s1, t0, t1).run();
+}
+
+void IntersectSearch::resolve_cluster(std::span<const ParallelBox> boxes) {
+  ParallelBox hull = boxes[0];
+  for (const ParallelBox& box : boxes) {
+    hull.s0 = std::min(hull.s0, box.s0);
+    hull.s1 = std::max(hull.s1, box.s1);
+    hull.t0 = std::min(hull.t0, box.t0);
+    hull.t1 = std::max(hull.t1, box.t1);
+  }
+  if (boxes.size() > 1) {
+    std::array<Vec2, max_curve_points> pa, pb;
+    restrict_curve(m_, a_, hull.s0, hull.s1, pa.data());
+    restrict_curve(n_, b_, hull.t0, hull.t1, pb.data());
+    if (!graph_like(pa.data(), pb.data())) {
+      const double middle = 0.5 * (hull.s0 + hull.s1);
+      std::vector<ParallelBox> left, right;
+      for (const ParallelBox& box : boxes) (box.s0 < middle ? left : right).push_back(box);
+      if (left.empty() || right.empty()) {
+        for (const ParallelBox& box : boxes) analyse(box.s0, box.s1, box.t0, box.t1);
+        return;
+      }
+      resolve_cluster(left);
+      resolve_cluster(right);
+      return;
+    }
+  }
+  analyse(hull.s0, hull.s1, hull.t0, hull.t1);
+}
+
+void IntersectSearch::resolve_parallel() {
+  // Boxes that touch belong together.
+  std::vector<ParallelBox> open(std::move(parallel_)), cluster;
+  while (!open.empty()) {
+    cluster.assign(1, open.back());
+    open.pop_back();
+    for (std::size_t i = 0; i < cluster.size(); ++i)
+      for (std::size_t j = 0; j < open.size();) {
+        const ParallelBox &p = cluster[i], &q = open[j];
+        if (p.s0 <= q.s1 && q.s0 <= p.s1 && p.t0 <= q.t1 && q.t0 <= p.t1) {
+          cluster.push_back(q);
+          open[j] = open.back();
+          open.pop_back();
+        } else {
+          ++j;
+        }
+      }
+    std::sort(cluster.begin(), cluster.end(), [](const ParallelBox& p, const ParallelBox& q) {
+      return p.s0 != q.s0 ? p.s0 < q.s0 : p.t0 < q.t0;
+    });
+    resolve_cluster(cluster);
+  }
+}
+
+}  // namespace bezel::geometry_kernel

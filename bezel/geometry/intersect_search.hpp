@@ -1,0 +1,77 @@
+#pragma once
+// The working state of one curve-curve intersection, shared by its two stages: subdivision with a
+// test for at most one transversal root (intersect.cpp), and the signed distance of nearly parallel
+// pieces (intersect_parallel.cpp).
+
+#include <array>
+#include <vector>
+
+#include "bezel/geometry/curve.hpp"
+#include "bezel/geometry/curve_kernel.hpp"
+
+namespace bezel::geometry_kernel {
+
+/// An end point of one curve lying on the other (within the coincidence distance, or to rounding).
+struct Contact {
+  double s, t;
+  bool a_end, b_end;  ///< which of the two is an end point there
+  int sign = 0;
+  bool certified = false;
+  bool in_overlap = false;
+};
+
+/// A pair of pieces, nearly parallel, waiting for the second stage.
+struct ParallelBox {
+  double s0, s1, t0, t1;
+};
+
+class IntersectSearch {
+ public:
+  IntersectSearch(const CurveCache& a, const CurveCache& b, const IntersectOptions& options,
+                  CurveIntersections& out);
+  void run();
+
+ private:
+  // Contacts (intersect_contacts.cpp).
+  void find_contacts();
+  void find_contact(const Vec2& p, const CurveCache& curve, bool of_a, double end);
+  void add_contact(double s, double t, bool a_end, bool b_end);
+  bool find_overlaps();
+  bool coincide(const Contact& p, const Contact& q, double& gap) const;
+
+  // Subdivision (intersect.cpp).
+  enum class Outcome { none, one, open };
+  Outcome transversal(const Vec2* pa, double s0, double s1, const Vec2* pb, double t0, double t1);
+  bool newton(double& s, double& t, double s0, double s1, double t0, double t1) const;
+  void descend(const Vec2* pa, double s0, double s1, int depth_a, const Vec2* pb, double t0,
+               double t1, int depth_b);
+  void add_crossing(double s, double t, double s0, double s1, double t0, double t1, int sign,
+                    bool certified);
+  void unresolved(double s0, double s1, double t0, double t1, const char* reason);
+  void finish();
+
+  // Nearly parallel pieces (intersect_parallel.cpp).
+  bool graph_like(const Vec2* pa, const Vec2* pb) const;
+  void resolve_parallel();
+  void resolve_cluster(std::span<const ParallelBox> boxes);
+  void analyse(double s0, double s1, double t0, double t1);
+  friend class ParallelPair;
+
+  const CurveCache &ca_, &cb_;
+  const int m_, n_;
+  const Vec2 *a_, *b_;
+  CurveIntersections& out_;
+  double tol_;        // the caller's coincidence distance
+  double magnitude_;  // largest |coordinate| of both curves
+  double rounding_;   // 4 u magnitude
+  double tau_;        // distance that counts as touching: max(tol, rounding)
+  double margin_;     // boxes further apart than this hold nothing
+  double size_;       // extent of the smaller curve
+  int parallel_depth_;
+  int work_ = 0;
+  std::array<Contact, 16> contacts_;
+  int contact_count_ = 0;
+  std::vector<ParallelBox> parallel_;
+};
+
+}  // namespace bezel::geometry_kernel

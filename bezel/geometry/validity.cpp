@@ -1,0 +1,113 @@
+// check_validity: the sign of the Jacobian determinant by subdivision of its Bernstein
+// coefficients.
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "bezel/geometry/triangle.hpp"
+#include "bezel/geometry/triangle_check.hpp"
+#include "bezel/geometry/triangle_kernel.hpp"
+
+namespace bezel {
+namespace {
+
+using Corners = std::array<Lambda, 3>;
+constexpr Corners whole{Lambda{1, 0, 0}, Lambda{0, 1, 0}, Lambda{0, 0, 1}};
+constexpr int max_depth = 40;  // bisections
+constexpr int max_pieces = 20000;
+
+/// x1 y2 - x2 y1 with one final rounding [Kahan; Jeannerod, Louvet, Muller 2013].
+double cross_accurate(const Vec2& a, const Vec2& b) {
+  const double w = a.y() * b.x();
+  const double e = std::fma(-a.y(), b.x(), w);
+  return std::fma(a.x(), b.y(), -w) + e;
+}
+
+}  // namespace
+
+ValidityResult check_validity(int g, std::span<const Vec2> control) {
+  geometry_kernel::check_triangle(g, control, bernstein::max_triangle_degree);
+  if (g == 1) {
+    const double det = cross_accurate(control[1] - control[0], control[2] - control[0]);
+    return {det > 0 ? Validity::valid : Validity::inverted, {1.0 / 3, 1.0 / 3, 1.0 / 3}, det};
+  }
+  const int d = 2 * (g - 1);
+  const auto n = static_cast<std::size_t>(bernstein::triangle_size(d));
+  const std::vector<double> det = jacobian_determinant(g, control);
+  // Rounding. Hodograph differences carry u |coordinate|, products and the sum of at most size(g-1)
+  // positive-weight terms size(g-1) + 4 roundings of the largest product; bisection is a convex
+  // combination and adds at most d u max|det| per level. `size` is the largest coordinate
+  // difference, `far` the largest coordinate.
+  const double u = 0x1p-53;
+  double size = 0, far = 0;
+  for (const Vec2& c : control) {
+    size = std::max({size, std::fabs(c.x() - control[0].x()), std::fabs(c.y() - control[0].y())});
+    far = std::max({far, std::fabs(c.x()), std::fabs(c.y())});
+  }
+  double largest = 0;
+  for (const double c : det) largest = std::max(largest, std::fabs(c));
+  double widest = 0;  // largest hodograph difference
+  for (int k = 0; k < g; ++k)
+    for (int j = 0; j + k < g; ++j) {
+      const Vec2& base = control[static_cast<std::size_t>(bernstein::triangle_index(g, j, k))];
+      for (const int i :
+           {bernstein::triangle_index(g, j + 1, k), bernstein::triangle_index(g, j, k + 1)}) {
+        const Vec2 e = control[static_cast<std::size_t>(i)] - base;
+        widest = std::max({widest, std::fabs(e.x()), std::fabs(e.y())});
+      }
+    }
+  const double terms = bernstein::triangle_size(g - 1) + 8;
+  const double base_error = 2 * u * g * g * terms * widest * widest;
+  static_cast<void>(far);
+
+  struct Piece {
+    std::vector<double> c;
+    Corners corner;
+    int depth;
+  };
+  std::vector<Piece> stack;
+  stack.push_back({det, whole, 0});
+  ValidityResult result{Validity::valid, whole[0], det[0]};
+  int pieces = 0;
+  while (!stack.empty()) {
+    Piece piece = std::move(stack.back());
+    stack.pop_back();
+    const double error = base_error + u * d * piece.depth * largest;
+    // The three corner coefficients are values of the determinant.
+    for (int corner = 0; corner < 3; ++corner) {
+      const double value = piece.c[static_cast<std::size_t>(bernstein::triangle_corner(d, corner))];
+      if (value < result.det) {
+        result.det = value;
+        result.where = piece.corner[static_cast<std::size_t>(corner)];
+      }
+    }
+    if (result.det < -error) {
+      result.status = Validity::inverted;
+      return result;
+    }
+    const double least = *std::min_element(piece.c.begin(), piece.c.end());
+    if (least > error) continue;
+    ++pieces;
+    if (piece.depth >= max_depth || pieces > max_pieces) {
+      result.status = Validity::undecided;
+      // The corner values so far are not negative beyond rounding; keep looking only in what is
+      // stacked.
+      if (pieces > max_pieces) return result;
+      continue;
+    }
+    Piece first{std::vector<double>(n), {}, piece.depth + 1},
+        second{std::vector<double>(n), {}, piece.depth + 1};
+    geometry_kernel::bisect(d, piece.c.data(), first.c.data(), second.c.data());
+    geometry_kernel::bisect_corners(piece.corner, first.corner, second.corner);
+    // Depth first into the child with the smaller coefficient: inverted elements end early.
+    const bool first_worse = *std::min_element(first.c.begin(), first.c.end()) <
+                             *std::min_element(second.c.begin(), second.c.end());
+    if (first_worse) std::swap(first, second);
+    stack.push_back(std::move(first));
+    stack.push_back(std::move(second));
+  }
+  return result;
+}
+
+}  // namespace bezel

@@ -1,0 +1,143 @@
+// The curve pairs of dhermes/bezier (tests/reference/data/bezier/SOURCE.md) against their exact
+// answers.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "bezel/geometry/curve.hpp"
+
+namespace {
+
+using bezel::Vec2;
+using nlohmann::json;
+
+json load(const std::string& name) {
+  std::ifstream in(std::string(BEZEL_REFERENCE_DATA) + "/" + name);
+  EXPECT_TRUE(in.good()) << name;
+  return json::parse(in);
+}
+
+double number(const json& j) {
+  if (j.is_number()) return j.get<double>();
+  const std::string text = j.get<std::string>();
+  const auto slash = text.find('/');
+  if (slash == std::string::npos) return std::strtod(text.c_str(), nullptr);  // hex float
+  return std::strtod(text.substr(0, slash).c_str(), nullptr) /
+         std::strtod(text.substr(slash + 1).c_str(), nullptr);
+}
+
+std::vector<Vec2> curve(const json& curves, const std::string& id) {
+  const json& points = curves.at(id).at("control_points");
+  std::vector<Vec2> control;
+  for (std::size_t i = 0; i < points.at(0).size(); ++i)
+    control.push_back(Vec2{{number(points.at(0).at(i)), number(points.at(1).at(i))}});
+  return control;
+}
+
+struct Pair {
+  double s, t;
+};
+
+/// Every point reported, as (s, t): crossings and tangencies.
+std::vector<Pair> points_of(const bezel::CurveIntersections& found) {
+  std::vector<Pair> points;
+  for (const auto& c : found.crossings) points.push_back({c.s, c.t});
+  for (const auto& c : found.tangencies) points.push_back({c.s, c.t});
+  std::sort(points.begin(), points.end(), [](const Pair& p, const Pair& q) { return p.s < q.s; });
+  return points;
+}
+
+std::string show(const bezel::CurveIntersections& found) {
+  std::ostringstream text;
+  text.precision(17);
+  for (const auto& c : found.crossings)
+    text << "\n  crossing " << c.s << " " << c.t << " sign " << c.sign << " cond " << c.condition;
+  for (const auto& c : found.tangencies) text << "\n  tangency " << c.s << " " << c.t;
+  for (const auto& c : found.overlaps)
+    text << "\n  overlap " << c.s0 << " " << c.s1 << " | " << c.t0 << " " << c.t1 << " gap "
+         << c.gap;
+  for (const auto& c : found.unresolved)
+    text << "\n  unresolved " << c.s_lo << " " << c.s_hi << " | " << c.t_lo << " " << c.t_hi << " "
+         << c.reason;
+  return text.str();
+}
+
+void check(const json& c, const bezel::CurveIntersections& found, const json& expected_s,
+           const json& expected_t, double tolerance, double coincidence_distance) {
+  const std::string type = c.at("type");
+  EXPECT_TRUE(found.unresolved.empty()) << show(found);
+  std::vector<Pair> expected;
+  for (std::size_t i = 0; i < expected_s.size(); ++i)
+    expected.push_back({number(expected_s.at(i)), number(expected_t.at(i))});
+  std::sort(expected.begin(), expected.end(),
+            [](const Pair& p, const Pair& q) { return p.s < q.s; });
+  // Case 33 is named coincident because both curves belong to one algebraic curve; on [0, 1] they
+  // meet in two points, its double point and a common end.
+  if (type == "coincident" && expected.size() == 2 && c.at("id") != 33) {
+    ASSERT_EQ(found.overlaps.size(), 1u) << show(found);
+    EXPECT_TRUE(found.crossings.empty() && found.tangencies.empty()) << show(found);
+    EXPECT_NEAR(found.overlaps[0].s0, expected[0].s, 1e-14);
+    EXPECT_NEAR(found.overlaps[0].s1, expected[1].s, 1e-14);
+    EXPECT_NEAR(found.overlaps[0].t0, expected[0].t, 1e-14);
+    EXPECT_NEAR(found.overlaps[0].t1, expected[1].t, 1e-14);
+    return;
+  }
+  // Contact of order 3 keeps the curves within the coincidence distance over a length of its cube
+  // root: then the answer is an overlap of that length about the place.
+  if (coincidence_distance > 0 && type == "tangent" && found.overlaps.size() == 1) {
+    const auto& o = found.overlaps[0];
+    EXPECT_TRUE(expected.size() == 1 && found.crossings.empty() && found.tangencies.empty())
+        << show(found);
+    EXPECT_LT(o.s1 - o.s0, 8 * std::cbrt(coincidence_distance)) << show(found);
+    EXPECT_TRUE(o.s0 < expected[0].s && expected[0].s < o.s1) << show(found);
+    EXPECT_TRUE(o.t0 < expected[0].t && expected[0].t < o.t1) << show(found);
+    return;
+  }
+  EXPECT_TRUE(found.overlaps.empty()) << show(found);
+  const std::vector<Pair> points = points_of(found);
+  ASSERT_EQ(points.size(), expected.size()) << show(found);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_NEAR(points[i].s, expected[i].s, tolerance) << show(found);
+    EXPECT_NEAR(points[i].t, expected[i].t, tolerance) << show(found);
+  }
+  if (type == "standard") {
+    EXPECT_TRUE(found.tangencies.empty()) << show(found);
+  } else if (type == "tangent") {
+    // At least one of the points is tangential: said so, or a crossing known to be ill-conditioned.
+    const bool tangential =
+        !found.tangencies.empty() ||
+        std::any_of(found.crossings.begin(), found.crossings.end(),
+                    [](const bezel::Crossing& x) { return x.sign == 0 || x.condition > 1e6; });
+    EXPECT_TRUE(tangential) << show(found);
+  }
+}
+
+class CurvePairs : public testing::TestWithParam<double> {};
+
+TEST_P(CurvePairs, AgreeWithTheReference) {
+  const json curves = load("curves.json"), cases = load("curve_intersections.json");
+  ASSERT_EQ(cases.size(), 53u);
+  for (const json& c : cases) {
+    SCOPED_TRACE("case " + std::to_string(c.at("id").get<int>()));
+    const auto a = curve(curves, c.at("curve1")), b = curve(curves, c.at("curve2"));
+    const double tolerance = c.at("type") == "tangent" ? 1e-7 : 1e-12;
+    bezel::IntersectOptions options;
+    options.coincidence_distance = GetParam();
+    check(c, bezel::intersect(a, b, options), c.at("curve1_params"), c.at("curve2_params"),
+          tolerance, GetParam());
+    if (c.at("curve1_params").size() <= 1 || c.at("type") != "coincident")
+      check(c, bezel::intersect(b, a, options), c.at("curve2_params"), c.at("curve1_params"),
+            tolerance, GetParam());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(CoincidenceDistance, CurvePairs, testing::Values(0.0, 1e-14));
+
+}  // namespace

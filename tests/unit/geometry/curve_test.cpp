@@ -1,0 +1,118 @@
+#include "bezel/geometry/curve.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "bezel/base/error.hpp"
+
+namespace {
+
+using bezel::Curve;
+using bezel::intersect;
+using bezel::Vec2;
+using Points = std::vector<Vec2>;
+
+template <class F>
+std::string message_of(F&& f) {
+  try {
+    f();
+  } catch (const bezel::InputError& error) {
+    return error.what();
+  }
+  return "no InputError";
+}
+
+TEST(CurveTest, EvaluatesItsEndsAndDerivative) {
+  const Curve c({{{0, 0}}, {{1, 2}}, {{2, 0}}});
+  EXPECT_EQ(c.degree(), 2);
+  EXPECT_EQ(c(0.0), (Vec2{{0, 0}}));
+  EXPECT_EQ(c(1.0), (Vec2{{2, 0}}));
+  EXPECT_EQ(c(0.5), (Vec2{{1, 1}}));
+  EXPECT_EQ(c.derivative(0.5), (Vec2{{2, 0}}));
+  EXPECT_EQ(c.box().hi, (Vec2{{2, 2}}));
+}
+
+TEST(CurveTest, LengthOfAParabola) {
+  // y = 2 x - x^2 on [0, 2]: length = sqrt(5) + asinh(2) / 2.
+  const Curve c({{{0, 0}}, {{1, 2}}, {{2, 0}}});
+  EXPECT_NEAR(c.length(), std::sqrt(5.0) + 0.5 * std::asinh(2.0), 1e-14);
+  EXPECT_EQ(Curve({{{1, 1}}, {{4, 5}}}).length(), 5.0);
+  EXPECT_EQ(Curve(Points(1)).length(), 0.0);
+}
+
+TEST(CurveTest, LengthOfACusp) {
+  // (s^2, s^3): length ((13)^1.5 - 8) / 27, with a vanishing derivative at s = 0.
+  const double third = 1.0 / 3;
+  const Curve c({{{0, 0}}, {{0, 0}}, {{third, 0}}, {{1, 1}}});
+  EXPECT_NEAR(c.length(), (std::pow(13.0, 1.5) - 8) / 27, 1e-13);
+}
+
+TEST(CurveTest, BadInput) {
+  EXPECT_EQ(message_of([] { Curve c(Points{}); }),
+            "the curve has no control points, expected 1 to 61");
+  EXPECT_EQ(message_of([] { Curve c(Points(62)); }),
+            "the curve has 62 control points, expected 1 to 61");
+  EXPECT_EQ(message_of([] {
+              Curve c({{{0, 0}}, {{NAN, 0}}});
+            }),
+            "control point 1 of the curve is not finite");
+  const Points line{{{0, 0}}, {{1, 1}}};
+  bezel::IntersectOptions options;
+  options.coincidence_distance = -1;
+  EXPECT_EQ(message_of([&] { intersect(line, line, options); }),
+            "the coincidence distance must be finite and not negative");
+  EXPECT_EQ(message_of([&] {
+              bezel::foot_point(line, Vec2{{INFINITY, 0}});
+            }),
+            "the point is not finite");
+}
+
+TEST(IntersectTest, TwoLines) {
+  const Points a{{{0, 0}}, {{2, 2}}}, b{{{0, 2}}, {{2, 0}}};
+  const auto found = intersect(a, b);
+  ASSERT_EQ(found.crossings.size(), 1u);
+  EXPECT_EQ(found.crossings[0].s, 0.5);
+  EXPECT_EQ(found.crossings[0].t, 0.5);
+  EXPECT_EQ(found.crossings[0].sign, -1);  // b goes right-down: from left to right of a
+  EXPECT_TRUE(found.crossings[0].certified);
+  EXPECT_TRUE(found.tangencies.empty() && found.overlaps.empty() && found.unresolved.empty());
+}
+
+TEST(IntersectTest, IdenticalAndReversedCurvesOverlap) {
+  const Points a{{{0, 0}}, {{1, 2}}, {{2, -1}}, {{3, 1}}};
+  const Points reversed(a.rbegin(), a.rend());
+  const auto same = intersect(a, a), back = intersect(a, reversed);
+  ASSERT_EQ(same.overlaps.size(), 1u);
+  EXPECT_EQ(same.overlaps[0].s0, 0.0);
+  EXPECT_EQ(same.overlaps[0].s1, 1.0);
+  EXPECT_EQ(same.overlaps[0].t0, 0.0);
+  EXPECT_EQ(same.overlaps[0].t1, 1.0);
+  ASSERT_EQ(back.overlaps.size(), 1u);
+  EXPECT_EQ(back.overlaps[0].t0, 1.0);
+  EXPECT_EQ(back.overlaps[0].t1, 0.0);
+  EXPECT_TRUE(same.crossings.empty() && back.crossings.empty());
+}
+
+TEST(IntersectTest, ReusedStorageIsClearedFirst) {
+  const Points a{{{0, 0}}, {{2, 2}}}, b{{{0, 2}}, {{2, 0}}}, c{{{5, 5}}, {{6, 6}}};
+  bezel::CurveIntersections out;
+  intersect(a, b, {}, out);
+  EXPECT_EQ(out.crossings.size(), 1u);
+  intersect(a, c, {}, out);
+  EXPECT_TRUE(out.crossings.empty());
+}
+
+TEST(FootPointTest, NearestOfSeveral) {
+  const Points parabola{{{-1, 1}}, {{0, -1}}, {{1, 1}}};  // y = x^2
+  const auto foot = bezel::foot_point(parabola, Vec2{{0, -1}});
+  EXPECT_NEAR(foot.s, 0.5, 1e-9);
+  EXPECT_NEAR(foot.distance, 1.0, 1e-15);
+  const auto end = bezel::foot_point(parabola, Vec2{{3, 3}});
+  EXPECT_EQ(end.s, 1.0);
+  EXPECT_EQ(end.point, (Vec2{{1, 1}}));
+}
+
+}  // namespace
