@@ -31,10 +31,12 @@ struct TransferOptions {
 struct FieldReport {
   std::string name;
   int component = 0;
-  double mass_before = 0, mass_after = 0;  ///< integrals of donor and target field, from their coefficients
-  double mass_outside = 0;                 ///< donor mass over parts that no target element covers
-  double mass_made = 0;                    ///< target mass over parts that no donor element covers
-  double relative_mass_defect = 0;  ///< |mass_after - (mass_before - mass_outside + mass_made)| / integral of |f_D|
+  double mass_before = 0,
+         mass_after = 0;    ///< integrals of donor and target field, from their coefficients
+  double mass_outside = 0;  ///< donor mass over parts that no target element covers
+  double mass_made = 0;     ///< target mass over parts that no donor element covers
+  double relative_mass_defect =
+      0;  ///< |mass_after - (mass_before - mass_outside + mass_made)| / integral of |f_D|
   double min_before = 0, max_before = 0, min_after = 0, max_after = 0;  ///< certified ranges
   double max_element_defect = 0;  ///< largest |element mass - mass received| / integral of |f_D|
 };
@@ -44,11 +46,15 @@ struct TransferReport {
   std::int64_t pairs = 0, crossings = 0, tangencies = 0, overlaps = 0, unresolved = 0;
   double uncovered_area = 0;  ///< target area without donor, in squared length units
   double outside_area = 0;    ///< donor area without target
-  double max_partition_residual = 0;  ///< max over targets of |sum of pair areas - covered area| / area
-  double max_joint_gap = 0;   ///< max over pairs of the largest boundary gap / smaller element diameter
-  std::vector<std::pair<ElementId, double>> uncovered_elements;  ///< and their uncovered areas, above 1e-10 of the element
-  struct {
-    double total = 0, overlay = 0, integrate = 0, solve = 0;
+  double max_partition_residual =
+      0;  ///< max over targets of |sum of pair areas - covered area| / area
+  double max_joint_gap =
+      0;  ///< max over pairs of the largest boundary gap / smaller element diameter
+  std::vector<std::pair<ElementId, double>>
+      uncovered_elements;  ///< and their uncovered areas, above 1e-10 of the element
+  struct Seconds {
+    double total = 0;                              ///< wall time
+    double overlay = 0, integrate = 0, solve = 0;  ///< summed over the threads
   } seconds;
 };
 
@@ -60,7 +66,8 @@ struct TransferResult {
 /// Thrown with Uncovered::error when the donor mesh does not cover the target mesh.
 class UncoveredError : public InputError {
  public:
-  UncoveredError(const std::string& message, std::vector<std::pair<ElementId, double>> elements, double area)
+  UncoveredError(const std::string& message, std::vector<std::pair<ElementId, double>> elements,
+                 double area)
       : InputError(message), elements_(std::move(elements)), area_(area) {}
   const std::vector<std::pair<ElementId, double>>& elements() const { return elements_; }
   double area() const { return area_; }
@@ -70,7 +77,8 @@ class UncoveredError : public InputError {
   double area_;
 };
 
-/// Moves fields (all on one donor mesh) to a target mesh: the L2-best discontinuous fields, mass conserved.
+/// Moves fields (all on one donor mesh) to a target mesh: the L2-best discontinuous fields, mass
+/// conserved.
 TransferResult transfer(std::span<const Field> donors, std::shared_ptr<const TriangleMesh> target,
                         const TransferOptions& options = {}, const Progress& progress = {});
 

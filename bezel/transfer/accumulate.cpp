@@ -1,0 +1,180 @@
+#include "bezel/transfer/accumulate.hpp"
+
+#include <array>
+#include <vector>
+
+#include "bezel/bernstein/index.hpp"
+#include "bezel/numeric/binomial.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bezel/transfer/accumulate.cpp"
+#include "hwy/foreach_target.h"
+// clang-format off
+#include "hwy/highway.h"
+// clang-format on
+
+HWY_BEFORE_NAMESPACE();
+namespace bezel::detail::HWY_NAMESPACE {
+
+// Plain loops over `lanes` points: the compiler turns them into this target's vectors. Nothing is
+// fused
+// (-ffp-contract=off) and sums stay per lane, so every target gives the same bits.
+constexpr int max_degree = 10;
+constexpr int max_size = bernstein::triangle_size(max_degree);
+
+template <int fixed>
+inline void powers(int runtime_degree, const double* u, const double* v, double (*out)[lanes]) {
+  const int d = fixed >= 0 ? fixed : runtime_degree;
+  double p0[max_degree + 1][lanes];
+  double p1[max_degree + 1][lanes];
+  double p2[lanes];
+  double first[lanes];
+  for (std::size_t l = 0; l < lanes; ++l) {
+    first[l] = 1.0 - u[l] - v[l];
+    p0[0][l] = 1.0;
+    p1[0][l] = 1.0;
+    p2[l] = 1.0;
+  }
+  for (int i = 1; i <= d; ++i) {
+    for (std::size_t l = 0; l < lanes; ++l) {
+      p0[i][l] = p0[i - 1][l] * first[l];
+      p1[i][l] = p1[i - 1][l] * u[l];
+    }
+  }
+  int n = 0;
+  for (int k = 0; k <= d; ++k) {
+    for (int j = 0; j <= d - k; ++j, ++n) {
+      for (std::size_t l = 0; l < lanes; ++l) out[n][l] = (p0[d - k - j][l] * p1[j][l]) * p2[l];
+    }
+    for (std::size_t l = 0; l < lanes; ++l) p2[l] *= v[l];
+  }
+}
+
+template <int target_fixed, int donor_fixed>
+void accumulate_fixed(int target_degree, int donor_degree, int components, const double* scaled,
+                      const PointBlock& points, double* product, double* basis, double* mass) {
+  const int nt = bernstein::triangle_size(target_fixed >= 0 ? target_fixed : target_degree);
+  const int nd = bernstein::triangle_size(donor_fixed >= 0 ? donor_fixed : donor_degree);
+  constexpr int target_room = target_fixed >= 0 ? bernstein::triangle_size(target_fixed) : max_size;
+  constexpr int donor_room = donor_fixed >= 0 ? bernstein::triangle_size(donor_fixed) : max_size;
+  double phi[target_room][lanes];
+  double psi[donor_room][lanes];
+  constexpr int chunk = 3;  // components summed in one sweep
+  for (int c0 = 0; c0 < components; c0 += chunk) {
+    const int nc = components - c0 < chunk ? components - c0 : chunk;
+    double sum[chunk][target_room][lanes] = {};
+    double plain[target_room][lanes] = {};
+    double total[chunk][lanes] = {};
+    for (std::size_t b = 0; b < points.blocks; ++b) {
+      const std::size_t at = b * lanes;
+      powers<target_fixed>(target_degree, points.target_u + at, points.target_v + at, phi);
+      powers<donor_fixed>(donor_degree, points.donor_u + at, points.donor_v + at, psi);
+      const double* w = points.weight + at;
+      for (int c = 0; c < nc; ++c) {
+        const double* f = scaled + (c0 + c) * nd;
+        double value[lanes] = {};
+        for (int n = 0; n < nd; ++n) {
+          for (std::size_t l = 0; l < lanes; ++l) value[l] += f[n] * psi[n][l];
+        }
+        for (std::size_t l = 0; l < lanes; ++l) {
+          value[l] *= w[l];
+          total[c][l] += value[l];
+        }
+        for (int n = 0; n < nt; ++n) {
+          for (std::size_t l = 0; l < lanes; ++l) sum[c][n][l] += value[l] * phi[n][l];
+        }
+      }
+      if (c0 == 0) {
+        for (int n = 0; n < nt; ++n) {
+          for (std::size_t l = 0; l < lanes; ++l) plain[n][l] += w[l] * phi[n][l];
+        }
+      }
+    }
+    const auto fold = [](const double* x) {
+      return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
+    };
+    for (int c = 0; c < nc; ++c) {
+      for (int n = 0; n < nt; ++n) product[n * components + c0 + c] += fold(sum[c][n]);
+      mass[c0 + c] += fold(total[c]);
+    }
+    if (c0 == 0) {
+      for (int n = 0; n < nt; ++n) basis[n] += fold(plain[n]);
+    }
+  }
+}
+
+void accumulate_target(int target_degree, int donor_degree, int components, const double* scaled,
+                       const PointBlock& points, double* product, double* basis, double* mass) {
+  if (target_degree == donor_degree) {
+    switch (target_degree) {
+      case 0:
+        return accumulate_fixed<0, 0>(0, 0, components, scaled, points, product, basis, mass);
+      case 1:
+        return accumulate_fixed<1, 1>(1, 1, components, scaled, points, product, basis, mass);
+      case 2:
+        return accumulate_fixed<2, 2>(2, 2, components, scaled, points, product, basis, mass);
+      case 3:
+        return accumulate_fixed<3, 3>(3, 3, components, scaled, points, product, basis, mass);
+      default:
+        break;
+    }
+  }
+  accumulate_fixed<-1, -1>(target_degree, donor_degree, components, scaled, points, product, basis,
+                           mass);
+}
+
+}  // namespace bezel::detail::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace bezel::detail {
+
+HWY_EXPORT(accumulate_target);
+
+void accumulate(int target_degree, int donor_degree, int components, const double* scaled,
+                const PointBlock& points, double* product, double* basis, double* mass) {
+  HWY_DYNAMIC_DISPATCH(accumulate_target)
+  (target_degree, donor_degree, components, scaled, points, product, basis, mass);
+}
+
+void evaluate_scaled(int degree, int components, const double* scaled, double u, double v,
+                     double* values) {
+  const double first = 1.0 - u - v;
+  std::array<double, 11> p0{};
+  std::array<double, 11> p1{};
+  p0[0] = p1[0] = 1.0;
+  for (std::size_t i = 1; i <= static_cast<std::size_t>(degree); ++i) {
+    p0[i] = p0[i - 1] * first;
+    p1[i] = p1[i - 1] * u;
+  }
+  const int size = bernstein::triangle_size(degree);
+  for (int c = 0; c < components; ++c) values[c] = 0.0;
+  double p2 = 1.0;
+  int n = 0;
+  for (int k = 0; k <= degree; ++k) {
+    for (int j = 0; j <= degree - k; ++j, ++n) {
+      const double m =
+          (p0[static_cast<std::size_t>(degree - k - j)] * p1[static_cast<std::size_t>(j)]) * p2;
+      for (int c = 0; c < components; ++c) values[c] += scaled[c * size + n] * m;
+    }
+    p2 *= v;
+  }
+}
+
+std::span<const double> multinomials(int degree) {
+  static const auto tables = [] {
+    std::array<std::vector<double>, 11> all;
+    for (int d = 0; d <= 10; ++d) {
+      for (int k = 0; k <= d; ++k) {
+        for (int j = 0; j <= d - k; ++j) {
+          all[static_cast<std::size_t>(d)].push_back(binomial(d, k) * binomial(d - k, j));
+        }
+      }
+    }
+    return all;
+  }();
+  return tables[static_cast<std::size_t>(degree)];
+}
+
+}  // namespace bezel::detail
+#endif

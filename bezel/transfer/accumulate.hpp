@@ -1,0 +1,34 @@
+#pragma once
+// Internal: sums of w f phi over quadrature points, vectorised across points.
+
+#include <cstddef>
+#include <span>
+
+namespace bezel::detail {
+
+/// Points per block; arrays are padded to whole blocks with weight 0.
+inline constexpr std::size_t lanes = 8;
+
+/// Structure of arrays of quadrature points; every array holds blocks * lanes values.
+struct PointBlock {
+  const double* weight;
+  const double *target_u, *target_v;  ///< barycentrics 1 and 2 in the target polynomial's triangle
+  const double *donor_u, *donor_v;    ///< the same for the donor
+  std::size_t blocks;
+};
+
+/// For the powers m_n = l0^i l1^j l2^k in index order (no multinomial factors):
+///   product[n * components + c] += sum_q w f_c m_n(target point),  basis[n] += sum_q w m_n,
+///   mass[c] += sum_q w f_c, with f_c = sum_n scaled[c * size + n] m_n(donor point).
+/// The order of the additions does not depend on the machine's vector width: same bits everywhere.
+void accumulate(int target_degree, int donor_degree, int components, const double* scaled,
+                const PointBlock& points, double* product, double* basis, double* mass);
+
+/// values[c] = f_c at one point.
+void evaluate_scaled(int degree, int components, const double* scaled, double u, double v,
+                     double* values);
+
+/// d! / (i! j! k!) in index order.
+std::span<const double> multinomials(int degree);
+
+}  // namespace bezel::detail

@@ -1,0 +1,119 @@
+#pragma once
+// Internal: right-hand sides, masses and coefficients of one target element from the segments of
+// its overlay.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "bezel/field/field.hpp"
+#include "bezel/numeric/quadrature.hpp"
+#include "bezel/transfer/overlay.hpp"
+#include "bezel/transfer/transfer.hpp"
+
+namespace bezel::detail {
+
+/// The components of all donor fields that share a donor space and go to the same target space.
+struct Group {
+  Group(const OverlayMesh& donor, const OverlayMesh& target, std::span<const Field* const> fields,
+        std::shared_ptr<const Space> target_space);
+
+  std::shared_ptr<const Space> donor_space, target_space;
+  int components = 0;
+  bool donor_mapped, target_mapped;  ///< polynomial in reference coordinates of a curved element
+  std::vector<Frame>
+      donor_frame;  ///< affine triangles of the donor's polynomials that are not mapped
+  /// Affine triangles on which the target's polynomials are computed: the triangle of the element's
+  /// corners where it fits the element (mass matrices are well conditioned there), else the space's
+  /// own frame.
+  std::vector<Frame> target_frame;
+  std::vector<double>
+      scaled;  ///< donor coefficients times multinomials, per element [component][n]
+  std::vector<double> donor_mass;  ///< per element [component]
+  std::vector<double> out;         ///< target coefficients, per element [n][component]
+
+  std::span<const double> donor_scaled(std::int32_t e) const;
+  std::span<double> target_out(std::int32_t e);
+};
+
+/// What one target element received.
+struct ElementOutcome {
+  double covered_area = 0, uncovered_area = 0;
+  double partition_residual = 0;  ///< relative to the element's area
+  double max_joint_gap = 0;
+  double max_mass_defect = 0;  ///< largest over components of |mass of the result - mass received|
+  std::int32_t pairs = 0;
+  double solve_seconds = 0;
+  bool inconsistent = false;  ///< the pieces around some T n D do not close
+};
+
+/// Masses and areas that donor elements gave, for the balance of what lies outside the target: one
+/// entry a pair.
+struct GivenList {
+  std::vector<std::int32_t> donor;
+  std::vector<double> area;
+  std::vector<double> mass;  ///< per entry all groups' components in order
+};
+
+/// Per-thread worker.
+class ElementTransfer {
+ public:
+  ElementTransfer(const OverlayMesh& donor, const OverlayMesh& target, const FrontSearch& search,
+                  std::span<Group> groups, Uncovered policy);
+
+  /// Integrates and solves on target element t; appends to `given`; `made` (all components) is
+  /// added to.
+  ElementOutcome process(std::int32_t t, std::span<const Segment> segments, GivenList& given,
+                         std::span<double> made);
+
+ private:
+  struct Node {
+    Vec2 x, dx;                       // point and derivative times weight, in the plane
+    std::array<double, 2> q{}, dq{};  // the same in reference coordinates, when used
+  };
+  struct Accumulators {
+    std::vector<double> product, basis, mass;
+    void reset(std::size_t functions, std::size_t components);
+  };
+  struct Factor {  // Cholesky factor of a target mass matrix and integrals of the basis functions
+    std::vector<double> lower, integrals;
+  };
+
+  const IntervalRule& rule(int points);
+  void boundary_nodes(std::span<const Segment> run, bool use_source, int degree);
+  double run_area(std::span<const Segment> run, Vec2& centre);
+  double closure(std::span<const Segment> run) const;
+  void flush(const Group& g, std::int32_t d, int target_degree, Accumulators& sums);
+  void add_pair(const Group& g, std::int32_t t, std::int32_t d, std::span<const Segment> run,
+                double area, const Vec2& centre, Accumulators& sums, std::span<double> mass);
+  void add_extension(const Group& g, std::int32_t t, std::span<const Segment> run, double area,
+                     const Vec2& centre, Accumulators& sums, std::span<double> made);
+  void finish(Group& g, std::int32_t t, Accumulators& sums, std::span<const double> mass,
+              double area, ElementOutcome& outcome);
+  Factor factor(const Group& g, std::int32_t t);
+  void push(double w, double tu, double tv, double du, double dv);
+  std::array<double, 2> target_place(const Group& g, std::int32_t t, const Vec2& x) const;
+  std::array<double, 2> donor_place(const Group& g, std::int32_t d, const Vec2& x,
+                                    std::array<double, 3>& warm, bool& have_warm) const;
+  void reference_nodes(const OverlayMesh& mesh, std::int32_t element, std::span<const Segment> run,
+                       bool source, int degree);
+
+  const OverlayMesh& donor_;
+  const OverlayMesh& target_;
+  const FrontSearch& search_;
+  std::span<Group> groups_;
+  Uncovered policy_;
+  std::vector<IntervalRule> rules_;
+  std::vector<Node> nodes_;
+  std::vector<double> w_, tu_, tv_, du_, dv_;
+  std::vector<Accumulators> sums_;
+  std::vector<double> masses_, pair_mass_;
+  std::vector<double> scratch_;
+  TriangleRule cached_rule_;
+  int cached_rule_degree_ = -1;
+};
+
+}  // namespace bezel::detail

@@ -1,0 +1,385 @@
+#include "bezel/transfer/overlay.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "bezel/base/error.hpp"
+
+namespace bezel::detail {
+namespace {
+
+/// Curves nearer to each other than this fraction of the smaller one count as coincident. Pieces
+/// merged so leave joints open by at most that much; the sums over a whole element close exactly
+/// all the same.
+constexpr double coincidence_fraction = 1e-13;
+/// ... and never less than the rounding of the coordinates themselves.
+constexpr double coordinate_rounding = 8.0 * 0x1p-53;
+/// sin(angle) below which a crossing's direction is not relied on.
+constexpr double reliable_sine = 1e-5;
+
+double largest_coordinate(const Box2& b) {
+  return std::max({std::abs(b.lo[0]), std::abs(b.lo[1]), std::abs(b.hi[0]), std::abs(b.hi[1])});
+}
+
+double coincidence_distance(const Box2& a, const Box2& b) {
+  return std::max(coincidence_fraction * std::min(a.diameter(), b.diameter()),
+                  coordinate_rounding * std::max(largest_coordinate(a), largest_coordinate(b)));
+}
+
+Vec2 point_at(std::span<const Vec2> control, double t) {
+  Vec2 p;
+  Vec2 d;
+  curve_point(control, t, p, d);
+  return p;
+}
+
+// Where a piece is looked at; the middle first, the others only when the middle is too close to an
+// edge.
+constexpr std::array<double, 5> looks = {0.5, 0.25, 0.75, 0.0625, 0.9375};
+/// A barycentric margin that decides at once.
+constexpr double clear_margin = 1e-7;
+
+}  // namespace
+
+void curve_point(std::span<const Vec2> control, double t, Vec2& point, Vec2& derivative) {
+  const std::size_t n = control.size();
+  std::array<Vec2, 12> b;
+  for (std::size_t i = 0; i < n; ++i) b[i] = control[i];
+  const double s = 1.0 - t;
+  for (std::size_t k = n - 1; k > 1; --k) {
+    for (std::size_t i = 0; i < k; ++i) b[i] = b[i] * s + b[i + 1] * t;
+  }
+  if (n == 1) {
+    point = b[0];
+    derivative = Vec2{};
+    return;
+  }
+  derivative = (b[1] - b[0]) * static_cast<double>(n - 1);
+  point = b[0] * s + b[1] * t;
+}
+
+ElementOverlay::ElementOverlay(const OverlayMesh& donor, const OverlayMesh& target,
+                               const FrontSearch& search)
+    : donor_(donor),
+      target_(target),
+      search_(search),
+      records_(target.edge_box.size()),
+      edge_stamp_(donor.edge_box.size(), 0) {}
+
+void ElementOverlay::begin_chunk() {
+  ++chunk_;
+  contacts_.clear();
+  coincidences_.clear();
+  pieces_.clear();
+  seed_ = exterior;
+}
+
+void ElementOverlay::collect_candidate_edges() {
+  candidate_edges_.clear();
+  if (++edge_now_ == 0) {
+    std::fill(edge_stamp_.begin(), edge_stamp_.end(), 0U);
+    edge_now_ = 1;
+  }
+  for (const std::int32_t d : candidates_) {
+    for (const SideEdge& side : donor_.element_edges[static_cast<std::size_t>(d)]) {
+      std::uint32_t& stamp = edge_stamp_[side.edge.index()];
+      if (stamp == edge_now_) continue;
+      stamp = edge_now_;
+      candidate_edges_.push_back(side.edge.value);
+    }
+  }
+  std::sort(candidate_edges_.begin(), candidate_edges_.end());
+}
+
+std::int32_t ElementOverlay::best_donor(const Vec2& p, double& margin) const {
+  std::int32_t best = exterior;
+  margin = -std::numeric_limits<double>::infinity();
+  for (const std::int32_t d : candidates_) {
+    const double m = inside_margin(donor_, d, p);
+    if (m > margin) {
+      margin = m;
+      best = d;
+    }
+    if (margin > clear_margin) break;
+  }
+  return margin >= 0.0 ? best : exterior;
+}
+
+std::int32_t ElementOverlay::locate_piece(std::span<const Vec2> curve, double r0, double r1) const {
+  std::int32_t answer = exterior;
+  double clearest = -1.0;
+  for (const double look : looks) {
+    double margin = 0.0;
+    const std::int32_t d = best_donor(point_at(curve, r0 + look * (r1 - r0)), margin);
+    if (std::abs(margin) > clearest) {
+      clearest = std::abs(margin);
+      answer = d;
+    }
+    if (clearest > clear_margin) break;
+  }
+  return answer;
+}
+
+bool ElementOverlay::inside_target(std::int32_t t, std::span<const Vec2> curve, double s0,
+                                   double s1) const {
+  bool answer = false;
+  double clearest = -1.0;
+  for (const double look : looks) {
+    const double margin = inside_margin(target_, t, point_at(curve, s0 + look * (s1 - s0)));
+    if (std::abs(margin) > clearest) {
+      clearest = std::abs(margin);
+      answer = margin > 0.0;
+    }
+    if (clearest > clear_margin) break;
+  }
+  return answer;
+}
+
+void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
+  const auto curve = target_.edge(edge);
+  Box2 box = target_.edge_box[static_cast<std::size_t>(edge)];
+  record = Record{};
+  record.chunk = chunk_;
+  record.contact_begin = static_cast<std::uint32_t>(contacts_.size());
+  record.coincidence_begin = static_cast<std::uint32_t>(coincidences_.size());
+  record.piece_begin = static_cast<std::uint32_t>(pieces_.size());
+
+  for (const std::int32_t e : candidate_edges_) {
+    const Box2& other = donor_.edge_box[static_cast<std::size_t>(e)];
+    const double distance = coincidence_distance(box, other);
+    const Vec2 room{{distance, distance}};
+    Box2 wide = box;
+    wide.lo -= room;
+    wide.hi += room;
+    if (!wide.overlaps(other)) continue;
+    IntersectOptions options;
+    options.coincidence_distance = distance;
+    const auto donor_curve = donor_.edge(e);
+    intersect(curve, donor_curve, options, found_);
+    for (const Crossing& c : found_.crossings) {
+      Vec2 pa;
+      Vec2 da;
+      Vec2 pb;
+      Vec2 db;
+      curve_point(curve, c.s, pa, da);
+      curve_point(donor_curve, c.t, pb, db);
+      const double sine = cross(da, db);
+      const double reliable = reliable_sine * norm(da) * norm(db);
+      const std::int8_t sign = sine > reliable    ? std::int8_t{1}
+                               : sine < -reliable ? std::int8_t{-1}
+                                                  : std::int8_t{0};
+      record.gap = std::max(record.gap, norm(pa - pb));
+      contacts_.push_back({c.s, c.t, e, sign});
+      ++record.crossings;
+    }
+    for (const Tangency& c : found_.tangencies) {
+      contacts_.push_back({c.s, c.t, e, 0});
+      ++record.tangencies;
+    }
+    for (const Overlap& c : found_.overlaps) {
+      coincidences_.push_back({c.s0, c.s1, c.t0, c.t1, e});
+      ++record.overlaps;
+    }
+    for (const UnresolvedBox& c : found_.unresolved) {
+      contacts_.push_back({0.5 * (c.s_lo + c.s_hi), 0.5 * (c.t_lo + c.t_hi), e, 0});
+      ++record.unresolved;
+    }
+  }
+  record.contact_end = static_cast<std::uint32_t>(contacts_.size());
+  record.coincidence_end = static_cast<std::uint32_t>(coincidences_.size());
+  const auto contacts = std::span(contacts_).subspan(record.contact_begin);
+  const auto coincidences = std::span(coincidences_).subspan(record.coincidence_begin);
+  std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) {
+    return std::tie(a.r, a.donor_edge, a.s) < std::tie(b.r, b.donor_edge, b.s);
+  });
+  std::sort(coincidences.begin(), coincidences.end(),
+            [](const Coincidence& a, const Coincidence& b) {
+              return std::tie(a.r0, a.r1, a.donor_edge) < std::tie(b.r0, b.r1, b.donor_edge);
+            });
+
+  breaks_.assign({0.0, 1.0});
+  for (const Contact& c : contacts) breaks_.push_back(c.r);
+  for (const Coincidence& c : coincidences) {
+    breaks_.push_back(c.r0);
+    breaks_.push_back(c.r1);
+  }
+  std::sort(breaks_.begin(), breaks_.end());
+  breaks_.erase(std::unique(breaks_.begin(), breaks_.end()), breaks_.end());
+
+  // The donor element before and after a contact, when a single plain crossing tells.
+  const auto side_of = [&](double r, bool before) -> std::pair<bool, std::int32_t> {
+    const auto first = std::lower_bound(contacts.begin(), contacts.end(), r,
+                                        [](const Contact& c, double value) { return c.r < value; });
+    if (first == contacts.end() || first->r != r) return {false, exterior};
+    if (first + 1 != contacts.end() && (first + 1)->r == r) return {false, exterior};
+    if (first->sign == 0 || !(first->s > 0.0 && first->s < 1.0)) return {false, exterior};
+    // sign +1: the target edge comes from the donor edge's left side.
+    const bool left = (first->sign > 0) == before;
+    return {true, donor_.edge_sides[static_cast<std::size_t>(first->donor_edge)][left ? 0 : 1]};
+  };
+  for (std::size_t i = 0; i + 1 < breaks_.size(); ++i) {
+    Piece piece{breaks_[i], breaks_[i + 1], exterior, -1};
+    const double middle = 0.5 * (piece.r0 + piece.r1);
+    for (std::size_t k = 0; k < coincidences.size(); ++k) {
+      if (coincidences[k].r0 < middle && middle < coincidences[k].r1) {
+        piece.coincidence = static_cast<std::int32_t>(record.coincidence_begin + k);
+        break;
+      }
+    }
+    if (piece.coincidence < 0) {
+      const auto after = side_of(piece.r0, false);
+      const auto before = side_of(piece.r1, true);
+      if (after.first && (!before.first || before.second == after.second)) {
+        piece.donor = after.second;
+      } else if (!after.first && before.first) {
+        piece.donor = before.second;
+      } else {
+        piece.donor = locate_piece(curve, piece.r0, piece.r1);
+      }
+    }
+    pieces_.push_back(piece);
+  }
+  record.piece_end = static_cast<std::uint32_t>(pieces_.size());
+}
+
+void ElementOverlay::add_donor_part(std::int32_t edge, double s0, double s1) {
+  const auto& sides = donor_.edge_sides[static_cast<std::size_t>(edge)];
+  segments_.push_back({sides[0], Part{}, Part{edge, s0, s1}});
+  segments_.push_back({sides[1], Part{}, Part{edge, s1, s0}});
+}
+
+void ElementOverlay::donor_edges_inside(std::int32_t t) {
+  // Contacts of T's boundary with donor edges, ordered along the donor edges.
+  marks_.clear();
+  covered_.clear();
+  for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
+    const Record& record = records_[side.edge.index()];
+    for (std::uint32_t i = record.contact_begin; i < record.contact_end; ++i) {
+      const Contact& c = contacts_[i];
+      std::int8_t direction = c.r > 0.0 && c.r < 1.0 ? c.sign : std::int8_t{0};
+      if (side.reversed) direction = static_cast<std::int8_t>(-direction);
+      marks_.push_back({c.donor_edge, c.s, direction});
+    }
+    for (std::uint32_t i = record.coincidence_begin; i < record.coincidence_end; ++i) {
+      const Coincidence& c = coincidences_[i];
+      marks_.push_back({c.donor_edge, c.s0, 0});
+      marks_.push_back({c.donor_edge, c.s1, 0});
+      covered_.push_back({c.donor_edge, {std::min(c.s0, c.s1), std::max(c.s0, c.s1)}});
+    }
+  }
+  std::sort(marks_.begin(), marks_.end(), [](const Mark& a, const Mark& b) {
+    return std::tie(a.edge, a.s, a.direction) < std::tie(b.edge, b.s, b.direction);
+  });
+
+  std::size_t next = 0;
+  for (const std::int32_t e : candidate_edges_) {
+    while (next < marks_.size() && marks_[next].edge < e) ++next;
+    const std::size_t first = next;
+    while (next < marks_.size() && marks_[next].edge == e) ++next;
+    const auto curve = donor_.edge(e);
+    if (first == next) {
+      // No contact: the whole edge is inside T or outside it.
+      const Box2& box = target_.element_box[static_cast<std::size_t>(t)];
+      if (box.contains(curve.front()) && box.contains(curve.back()) &&
+          inside_target(t, curve, 0.0, 1.0)) {
+        add_donor_part(e, 0.0, 1.0);
+      }
+      continue;
+    }
+    double s = 0.0;
+    std::int8_t direction = 0;
+    for (std::size_t i = first; i <= next; ++i) {
+      double end = 1.0;
+      std::int8_t end_direction = 0;
+      if (i < next) {
+        end = marks_[i].s;
+        end_direction = marks_[i].direction;
+        for (; i + 1 < next && marks_[i + 1].s == end; ++i) end_direction = 0;
+      }
+      if (end > s) {
+        const double middle = 0.5 * (s + end);
+        bool on_boundary = false;
+        for (const auto& [edge, interval] : covered_) {
+          on_boundary =
+              on_boundary || (edge == e && interval.first < middle && middle < interval.second);
+        }
+        if (!on_boundary) {
+          bool inside = false;
+          if (direction != 0 && (end_direction == 0 || end_direction == -direction)) {
+            inside = direction > 0;
+          } else if (direction == 0 && end_direction != 0) {
+            inside = end_direction < 0;
+          } else {
+            inside = inside_target(t, curve, s, end);
+          }
+          if (inside) add_donor_part(e, s, end);
+        }
+        s = end;
+        direction = end_direction;
+      } else {
+        direction = 0;  // several contacts in one place tell nothing
+      }
+    }
+  }
+}
+
+std::span<const Segment> ElementOverlay::segments(std::int32_t t, OverlayCounts& counts) {
+  const Box2& box = target_.element_box[static_cast<std::size_t>(t)];
+  const double room = 1e-9 * box.diameter();
+  Box2 wide = box;
+  wide.lo -= Vec2{{room, room}};
+  wide.hi += Vec2{{room, room}};
+  search_.query(wide, seed_, search_memory_, candidates_);
+  if (!candidates_.empty()) seed_ = candidates_[candidates_.size() / 2];
+  collect_candidate_edges();
+
+  segments_.clear();
+  for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
+    Record& record = records_[side.edge.index()];
+    if (record.chunk != chunk_) overlay_edge(side.edge.value, record);
+    const auto& owner = target_.edge_sides[side.edge.index()];
+    if ((owner[0] != exterior ? owner[0] : owner[1]) == t) {
+      counts.crossings += record.crossings;
+      counts.tangencies += record.tangencies;
+      counts.overlaps += record.overlaps;
+      counts.unresolved += record.unresolved;
+    }
+    const double smaller = std::max(target_.edge_box[side.edge.index()].diameter(), 1e-300);
+    counts.max_joint_gap = std::max(counts.max_joint_gap, record.gap / smaller);
+    for (std::uint32_t i = record.piece_begin; i < record.piece_end; ++i) {
+      const Piece& piece = pieces_[i];
+      Segment segment;
+      segment.target = {side.edge.value, piece.r0, piece.r1};
+      segment.donor = piece.donor;
+      if (piece.coincidence >= 0) {
+        const Coincidence& c = coincidences_[static_cast<std::size_t>(piece.coincidence)];
+        // Parameters of the piece on the donor edge: the piece may be cut finer than the
+        // coincidence.
+        const auto map = [&](double r) {
+          if (r == c.r0) return c.s0;
+          if (r == c.r1) return c.s1;
+          return std::clamp(
+              foot_point(donor_.edge(c.donor_edge), point_at(target_.edge(side.edge.value), r)).s,
+              std::min(c.s0, c.s1), std::max(c.s0, c.s1));
+        };
+        segment.source = {c.donor_edge, map(piece.r0), map(piece.r1)};
+        const bool same_direction = c.s0 < c.s1;
+        segment.donor = donor_.edge_sides[static_cast<std::size_t>(c.donor_edge)]
+                                         [same_direction != side.reversed ? 0 : 1];
+      }
+      if (side.reversed) {
+        std::swap(segment.target.from, segment.target.to);
+        std::swap(segment.source.from, segment.source.to);
+      }
+      segments_.push_back(segment);
+    }
+  }
+  donor_edges_inside(t);
+  std::stable_sort(segments_.begin(), segments_.end(),
+                   [](const Segment& a, const Segment& b) { return a.donor < b.donor; });
+  return segments_;
+}
+
+}  // namespace bezel::detail

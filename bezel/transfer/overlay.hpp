@@ -1,0 +1,118 @@
+#pragma once
+// Internal: the common refinement of two meshes, one target element at a time.
+//
+// Each target edge is intersected once with each donor edge near it and cut into pieces at the
+// contacts; a piece lies in one donor element, outside the donor mesh, or on a donor edge. The same
+// contacts cut the donor edges, so the pieces that bound T and D fit together: the boundary of T n
+// D is the pieces of T's edges inside D, the pieces of D's edges inside T, and the pieces on both
+// (counted once).
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "bezel/geometry/curve.hpp"
+#include "bezel/transfer/overlay_mesh.hpp"
+
+namespace bezel::detail {
+
+/// Part of an edge curve, run from parameter `from` to `to` (canonical direction of the edge; from
+/// > to reverses).
+struct Part {
+  std::int32_t edge = -1;
+  double from = 0, to = 0;
+};
+
+/// One piece of the boundary of (T n donor), run counter-clockwise. A piece on both meshes' edges
+/// has both parts.
+struct Segment {
+  std::int32_t donor =
+      exterior;  ///< donor element, or exterior: the part of T that no donor covers
+  Part target;   ///< edge -1 when the piece is no part of T's boundary
+  Part source;   ///< the same for the donor's boundary
+};
+
+struct OverlayCounts {
+  std::int64_t pairs = 0, crossings = 0, tangencies = 0, overlaps = 0, unresolved = 0;
+  double max_joint_gap = 0;
+};
+
+/// Computes segments of target elements. One object per thread; `begin_chunk` forgets everything.
+class ElementOverlay {
+ public:
+  ElementOverlay(const OverlayMesh& donor, const OverlayMesh& target, const FrontSearch& search);
+
+  /// Forgets the edges computed so far (memory stays bounded by a chunk of elements).
+  void begin_chunk();
+  /// The segments of all T n D of target element t, sorted by donor (exterior first).
+  /// counts: contacts are counted when first computed in a chunk by their owner (the edge's left or
+  /// only element).
+  std::span<const Segment> segments(std::int32_t t, OverlayCounts& counts);
+  /// Donor elements whose boxes overlap the last element's box, ascending.
+  std::span<const std::int32_t> candidates() const { return candidates_; }
+
+ private:
+  struct Contact {
+    double r, s;
+    std::int32_t donor_edge;
+    std::int8_t sign;  // +1: the donor edge passes from right to left of the target edge; 0: not to
+                       // be relied on
+  };
+  struct Coincidence {
+    double r0, r1, s0, s1;
+    std::int32_t donor_edge;
+  };
+  struct Piece {
+    double r0, r1;
+    std::int32_t donor;        // donor element or exterior
+    std::int32_t coincidence;  // index into coincidences_, -1 when the piece is not on a donor edge
+  };
+  struct Record {
+    std::uint32_t chunk = 0;
+    std::uint32_t contact_begin = 0, contact_end = 0;
+    std::uint32_t coincidence_begin = 0, coincidence_end = 0;
+    std::uint32_t piece_begin = 0, piece_end = 0;
+    double gap = 0;
+    std::int32_t crossings = 0, tangencies = 0, overlaps = 0, unresolved = 0;
+  };
+  struct Mark {
+    std::int32_t edge;
+    double s;
+    std::int8_t direction;  // +1 enters T as s increases, -1 leaves, 0 unknown
+  };
+
+  void collect_candidate_edges();
+  void overlay_edge(std::int32_t edge, Record& record);
+  std::int32_t locate_piece(std::span<const Vec2> curve, double r0, double r1) const;
+  std::int32_t best_donor(const Vec2& p, double& margin) const;
+  bool inside_target(std::int32_t t, std::span<const Vec2> curve, double s0, double s1) const;
+  void add_donor_part(std::int32_t edge, double s0, double s1);
+  void donor_edges_inside(std::int32_t t);
+
+  const OverlayMesh& donor_;
+  const OverlayMesh& target_;
+  const FrontSearch& search_;
+  FrontSearch::Memory search_memory_;
+  std::uint32_t chunk_ = 0;
+  std::int32_t seed_ = exterior;
+  std::vector<Record> records_;
+  std::vector<Contact> contacts_;
+  std::vector<Coincidence> coincidences_;
+  std::vector<Piece> pieces_;
+  std::vector<std::int32_t> candidates_, candidate_edges_;
+  std::vector<std::uint32_t> edge_stamp_;
+  std::uint32_t edge_now_ = 0;
+  std::vector<Mark> marks_;
+  std::vector<std::pair<std::int32_t, std::pair<double, double>>>
+      covered_;  // donor edge, s interval on T's boundary
+  std::vector<Segment> segments_;
+  std::vector<double> breaks_;
+  std::vector<std::uint8_t> touched_;
+  CurveIntersections found_;
+};
+
+/// Point of a Bezier curve and its derivative; degree <= 10, unchecked.
+void curve_point(std::span<const Vec2> control, double t, Vec2& point, Vec2& derivative);
+
+}  // namespace bezel::detail

@@ -1,0 +1,210 @@
+#include "bezel/transfer/overlay_mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bezel/base/error.hpp"
+#include "bezel/base/parallel.hpp"
+#include "bezel/geometry/triangle.hpp"
+
+namespace bezel::detail {
+namespace {
+
+constexpr std::size_t block = 1024;
+
+std::uint64_t spread_bits(std::uint64_t x) {
+  x &= 0xffffffffULL;
+  x = (x | (x << 16)) & 0x0000ffff0000ffffULL;
+  x = (x | (x << 8)) & 0x00ff00ff00ff00ffULL;
+  x = (x | (x << 4)) & 0x0f0f0f0f0f0f0f0fULL;
+  x = (x | (x << 2)) & 0x3333333333333333ULL;
+  x = (x | (x << 1)) & 0x5555555555555555ULL;
+  return x;
+}
+
+}  // namespace
+
+OverlayMesh::OverlayMesh(std::shared_ptr<const TriangleMesh> source, const std::string& what,
+                         int threads)
+    : mesh(std::move(source)),
+      degree(mesh->degree()),
+      element_size(static_cast<std::size_t>(mesh->nodes_per_element())) {
+  const std::size_t edges = mesh->edge_count();
+  const std::size_t elements = mesh->element_count();
+  const auto edge_size = static_cast<std::size_t>(degree + 1);
+  edge_control.resize(edges * edge_size);
+  edge_box.resize(edges);
+  edge_sides.resize(edges);
+  for (std::size_t e = 0; e < edges; ++e) {
+    const std::span<Vec2> control(edge_control.data() + e * edge_size, edge_size);
+    mesh->gather_edge(EdgeId(e), control);
+    for (const Vec2& p : control) edge_box[e].include(p);
+    edge_sides[e] = {exterior, exterior};
+    for (const ElementSide& side : mesh->adjacent(EdgeId(e))) {
+      std::int32_t& place = edge_sides[e][side.reversed ? 1 : 0];
+      if (place != exterior) {
+        throw InputError({"", 0, "triangle", side.element.value},
+                         what + " mesh: lies on the same side of an edge as triangle " +
+                             std::to_string(place) +
+                             ", expected at most one triangle on each side");
+      }
+      place = side.element.value;
+    }
+  }
+  element_edges.resize(elements);
+  element_control.resize(elements * element_size);
+  element_box.resize(elements);
+  element_area.resize(elements);
+  parallel_for((elements + block - 1) / block,
+               [&](std::size_t b) {
+                 for (std::size_t e = b * block; e < std::min(elements, (b + 1) * block); ++e) {
+                   element_edges[e] = mesh->edges(ElementId(e));
+                   const std::span<Vec2> control(element_control.data() + e * element_size,
+                                                 element_size);
+                   mesh->gather(ElementId(e), control);
+                   for (const Vec2& p : control) element_box[e].include(p);
+                   const ValidityResult validity = check_validity(degree, control);
+                   if (validity.status == Validity::inverted) {
+                     throw InputError({"", 0, "triangle", static_cast<std::int64_t>(e)},
+                                      what + " mesh: the element is inverted (its Jacobian is " +
+                                          std::to_string(validity.det) +
+                                          " at one place), expected it positive everywhere");
+                   }
+                   element_area[e] = area(degree, control);
+                 }
+               },
+               threads);
+  for (const Box2& b : element_box) box.include(b);
+}
+
+std::array<Vec2, 3> OverlayMesh::corners(std::int32_t e) const {
+  const auto control = element(e);
+  return {control[0], control[static_cast<std::size_t>(degree)], control[element_size - 1]};
+}
+
+std::vector<std::int32_t> OverlayMesh::spatial_order() const {
+  std::vector<std::pair<std::uint64_t, std::int32_t>> keyed(element_count());
+  const double width = std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], 1e-300});
+  const double scale = 4294967295.0 / width;
+  for (std::size_t e = 0; e < keyed.size(); ++e) {
+    const Vec2 c = element_box[e].centre() - box.lo;
+    const auto cell = [&](double x) {
+      return spread_bits(static_cast<std::uint64_t>(std::clamp(x * scale, 0.0, 4294967295.0)));
+    };
+    keyed[e] = {cell(c[0]) | (cell(c[1]) << 1), static_cast<std::int32_t>(e)};
+  }
+  std::sort(keyed.begin(), keyed.end());
+  std::vector<std::int32_t> order(keyed.size());
+  for (std::size_t i = 0; i < keyed.size(); ++i) order[i] = keyed[i].second;
+  return order;
+}
+
+FrontSearch::FrontSearch(const OverlayMesh& mesh) : mesh_(mesh), tree_(mesh.element_box) {}
+
+void FrontSearch::query(const Box2& box, std::int32_t seed, Memory& memory,
+                        std::vector<std::int32_t>& out) const {
+  out.clear();
+  const auto& boxes = mesh_.element_box;
+  bool complete = seed != exterior && boxes[static_cast<std::size_t>(seed)].overlaps(box);
+  if (complete) {
+    if (memory.stamp.size() != boxes.size()) {
+      memory.stamp.assign(boxes.size(), 0);
+      memory.now = 0;
+    }
+    if (++memory.now == 0) {
+      std::fill(memory.stamp.begin(), memory.stamp.end(), 0U);
+      memory.now = 1;
+    }
+    memory.stamp[static_cast<std::size_t>(seed)] = memory.now;
+    out.push_back(seed);
+    for (std::size_t i = 0; complete && i < out.size(); ++i) {
+      for (const SideEdge& side : mesh_.element_edges[static_cast<std::size_t>(out[i])]) {
+        const std::int32_t next = mesh_.across(out[i], side.edge.value);
+        if (next == exterior) {
+          // Beyond the boundary (a hole, a bay) there may be elements that the walk cannot reach.
+          if (mesh_.edge_box[side.edge.index()].overlaps(box)) {
+            complete = false;
+            break;
+          }
+          continue;
+        }
+        std::uint32_t& stamp = memory.stamp[static_cast<std::size_t>(next)];
+        if (stamp == memory.now) continue;
+        stamp = memory.now;
+        if (boxes[static_cast<std::size_t>(next)].overlaps(box)) out.push_back(next);
+      }
+    }
+  }
+  if (!complete) {
+    out.clear();
+    tree_.query(box, out);
+  }
+  std::sort(out.begin(), out.end());
+}
+
+std::int32_t FrontSearch::nearest(const Vec2& p) const {
+  return tree_.nearest(p, [&](std::int32_t e) {
+    // Distance to the polygon through the corners and side control points is enough to pick a
+    // neighbour.
+    double best = std::numeric_limits<double>::infinity();
+    if (inside_margin(mesh_, e, p) >= 0.0) return 0.0;
+    for (const SideEdge& side : mesh_.element_edges[static_cast<std::size_t>(e)]) {
+      const auto control = mesh_.edge(side.edge.value);
+      for (std::size_t i = 0; i + 1 < control.size(); ++i) {
+        const Vec2 d = control[i + 1] - control[i];
+        const double length_squared = dot(d, d);
+        const double t = length_squared > 0
+                             ? std::clamp(dot(p - control[i], d) / length_squared, 0.0, 1.0)
+                             : 0.0;
+        best = std::min(best, norm(p - (control[i] + d * t)));
+      }
+    }
+    // The box distance never exceeds this value's true counterpart; keep the promise under
+    // rounding.
+    const Box2& b = mesh_.element_box[static_cast<std::size_t>(e)];
+    const double dx = std::max({b.lo[0] - p[0], 0.0, p[0] - b.hi[0]});
+    const double dy = std::max({b.lo[1] - p[1], 0.0, p[1] - b.hi[1]});
+    return std::max(best, std::sqrt(dx * dx + dy * dy));
+  });
+}
+
+bool invert_map(int degree, std::span<const Vec2> control, const Vec2& p,
+                std::array<double, 3>& lambda, bool warm) {
+  const Vec2 c0 = control[0];
+  const Vec2 c1 = control[static_cast<std::size_t>(degree)];
+  const Vec2 c2 = control[control.size() - 1];
+  const Vec2 a = c1 - c0;
+  const Vec2 b = c2 - c0;
+  const double det = cross(a, b);
+  if (degree == 1 || (!warm && det > 0.0)) {
+    const double l1 = cross(p - c0, b) / det;
+    const double l2 = cross(a, p - c0) / det;
+    lambda = {1.0 - l1 - l2, l1, l2};
+    if (degree == 1) return std::isfinite(l1) && std::isfinite(l2);
+  } else if (!warm) {
+    lambda = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
+  }
+  const InverseResult result = invert(degree, control, p, lambda);
+  if (result.converged) {
+    lambda = result.lambda;
+    return true;
+  }
+  const LocateResult located = locate(degree, control, p, 1e-9);
+  if (located.status == Location::inside) {
+    lambda = located.lambda;
+    return true;
+  }
+  return false;
+}
+
+double inside_margin(const OverlayMesh& mesh, std::int32_t element, const Vec2& p) {
+  std::array<double, 3> lambda{};
+  if (!mesh.element_box[static_cast<std::size_t>(element)].contains(p) ||
+      !invert_map(mesh.degree, mesh.element(element), p, lambda, false)) {
+    return -std::numeric_limits<double>::infinity();
+  }
+  return std::min({lambda[0], lambda[1], lambda[2]});
+}
+
+}  // namespace bezel::detail

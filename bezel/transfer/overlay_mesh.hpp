@@ -1,0 +1,89 @@
+#pragma once
+// Internal: a mesh laid out for the overlay: geometry of edges and elements in flat arrays, boxes,
+// search.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bezel/mesh/bvh.hpp"
+#include "bezel/mesh/mesh.hpp"
+
+namespace bezel::detail {
+
+/// No element: the outside of a mesh.
+inline constexpr std::int32_t exterior = -1;
+
+struct OverlayMesh {
+  /// @param what "donor" or "target", for messages
+  /// @throws InputError when an element is inverted or an edge has more than one element on a side
+  OverlayMesh(std::shared_ptr<const TriangleMesh> source, const std::string& what, int threads);
+
+  std::shared_ptr<const TriangleMesh> mesh;
+  int degree = 1;
+  std::size_t element_size = 0;    ///< control points per element
+  std::vector<Vec2> edge_control;  ///< (degree+1) per edge, canonical direction
+  std::vector<Box2> edge_box;
+  std::vector<std::array<std::int32_t, 2>>
+      edge_sides;  ///< element left and right of each edge, or exterior
+  std::vector<std::array<SideEdge, 3>> element_edges;
+  std::vector<Vec2> element_control;
+  std::vector<Box2> element_box;
+  std::vector<double> element_area;  ///< exact up to rounding
+  Box2 box;
+
+  std::size_t element_count() const { return element_box.size(); }
+  std::span<const Vec2> edge(std::int32_t e) const {
+    const auto n = static_cast<std::size_t>(degree + 1);
+    return {edge_control.data() + static_cast<std::size_t>(e) * n, n};
+  }
+  std::span<const Vec2> element(std::int32_t e) const {
+    return {element_control.data() + static_cast<std::size_t>(e) * element_size, element_size};
+  }
+  /// The element on the other side of edge e, or exterior.
+  std::int32_t across(std::int32_t element, std::int32_t e) const {
+    const auto& s = edge_sides[static_cast<std::size_t>(e)];
+    return s[0] == element ? s[1] : s[0];
+  }
+  std::array<Vec2, 3> corners(std::int32_t e) const;
+  /// Elements in an order in which neighbours in the list are near each other (Morton order of the
+  /// box centres).
+  std::vector<std::int32_t> spatial_order() const;
+};
+
+/// Finds the elements whose boxes overlap a box by walking over the adjacency graph from a known
+/// element (an advancing front), and asks a tree only where the front meets the mesh's boundary or
+/// has no start.
+class FrontSearch {
+ public:
+  explicit FrontSearch(const OverlayMesh& mesh);
+
+  /// Per-thread memory of the walk.
+  struct Memory {
+    std::vector<std::uint32_t> stamp;
+    std::uint32_t now = 0;
+  };
+  /// Ascending element numbers; `seed` may be exterior. The answer does not depend on the seed.
+  void query(const Box2& box, std::int32_t seed, Memory& memory,
+             std::vector<std::int32_t>& out) const;
+  /// The element nearest to p by the distance of its corners and centre; for extending fields.
+  std::int32_t nearest(const Vec2& p) const;
+
+ private:
+  const OverlayMesh& mesh_;
+  Bvh tree_;
+};
+
+/// Finds lambda with b(lambda) = p for a triangle given by control points; start: an affine guess
+/// or `warm`. False when Newton does not converge.
+bool invert_map(int degree, std::span<const Vec2> control, const Vec2& p,
+                std::array<double, 3>& lambda, bool warm);
+
+/// The smallest barycentric coordinate of p in an element: positive inside, negative outside; minus
+/// infinity when the map could not be inverted there.
+double inside_margin(const OverlayMesh& mesh, std::int32_t element, const Vec2& p);
+
+}  // namespace bezel::detail
