@@ -9,6 +9,14 @@
 #include "bezel/base/error.hpp"
 
 namespace bezel::field_detail {
+namespace {
+
+// The sign of a NaN depends on the machine's library; messages do not.
+double without_sign(double x) {
+  return std::isnan(x) ? std::abs(x) : x;
+}
+
+}  // namespace
 
 void check_formula(const Formula& formula) {
   if (formula.variables().size() != 2)
@@ -30,7 +38,7 @@ void evaluate_formula(const Formula& formula, std::span<const Vec2> points, std:
     if (!std::isfinite(out[q]))
       throw InputError({{}, 0, "triangle", e.value},
                        fmt::format("formula '{}' is {} at x = {}, y = {}, expected a finite value",
-                                   formula.text(), out[q], x[q], y[q]));
+                                   formula.text(), without_sign(out[q]), x[q], y[q]));
 }
 
 Vec2 formula_gradient(const Formula& formula, const Vec2& point, ElementId e) {
@@ -40,7 +48,8 @@ Vec2 formula_gradient(const Formula& formula, const Vec2& point, ElementId e) {
     throw InputError({{}, 0, "triangle", e.value},
                      fmt::format("the gradient of formula '{}' is ({}, {}) at x = {}, y = {}, "
                                  "expected finite values",
-                                 formula.text(), first[0], first[1], point.x(), point.y()));
+                                 formula.text(), without_sign(first[0]), without_sign(first[1]),
+                                 point.x(), point.y()));
   return {first[0], first[1]};
 }
 

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/SparseCholesky>
 #include <cmath>
 
 #include "bezel/base/error.hpp"
@@ -61,18 +60,21 @@ VectorXd conjugate_gradients(const Matrix& mass, const VectorXd& rhs) {
 
 }  // namespace
 
-MatrixXd solve_mass(const Matrix& mass, const MatrixXd& rhs, std::size_t largest_direct) {
-  if (static_cast<std::size_t>(mass.rows()) <= largest_direct) {
-    const Eigen::SimplicialLLT<Matrix> llt(mass);
-    if (llt.info() != Eigen::Success) not_definite();
-    MatrixXd x = llt.solve(rhs);
-    x += llt.solve(rhs - mass * x);
+MassSolver::MassSolver(const Matrix& mass, std::size_t largest_direct) : mass_(mass) {
+  if (static_cast<std::size_t>(mass.rows()) > largest_direct) return;
+  cholesky_ = std::make_unique<Eigen::SimplicialLLT<Matrix>>(mass);
+  if (cholesky_->info() != Eigen::Success) not_definite();
+}
+
+MatrixXd MassSolver::solve(const MatrixXd& rhs) const {
+  if (cholesky_) {
+    MatrixXd x = cholesky_->solve(rhs);
+    x += cholesky_->solve(rhs - mass_ * x);
     return x;
   }
-  MatrixXd x(rhs.rows(), rhs.cols());
+  MatrixXd x = MatrixXd::Zero(rhs.rows(), rhs.cols());
   for (Eigen::Index k = 0; k < rhs.cols(); ++k)
-    x.col(k) = rhs.col(k).isZero(0.0) ? VectorXd::Zero(rhs.rows()).eval()
-                                      : conjugate_gradients(mass, rhs.col(k));
+    if (!rhs.col(k).isZero(0.0)) x.col(k) = conjugate_gradients(mass_, rhs.col(k));
   return x;
 }
 

@@ -4,7 +4,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -137,9 +136,17 @@ MatrixXd load(const Samples& s, const MatrixXd& values) {
   return s.basis * (s.weight.asDiagonal() * values);
 }
 
-/// The projection on one element: Cholesky and one correction with the residual taken at the points
-/// ("corrected seminormal equations"), so that a polynomial of the space comes back to rounding
-/// although the condition of the mass matrix is the square of the basis's.
+// Corrections with the residual taken at the points ("corrected seminormal equations"): a
+// polynomial of the space comes back to rounding although the condition of the mass matrix is the
+// square of the basis's. One or two do.
+constexpr int max_corrections = 4;
+
+/// True while corrections of size `now` are worth another round.
+bool still_shrinking(double now, double before, double solution) {
+  return now > 0x1p-53 * solution && now < 0.25 * before;
+}
+
+/// The projection on one element, by Cholesky and corrections.
 MatrixXd project_element(const Space& space, ElementId e, const TriangleRule& rule,
                          std::span<const Formula> components) {
   const Samples s = take_samples(space, e, rule, components);
@@ -149,38 +156,69 @@ MatrixXd project_element(const Space& space, ElementId e, const TriangleRule& ru
                      "its mass matrix is not positive definite, expected an element that is not "
                      "inverted or flat");
   MatrixXd c = llt.solve(load(s, s.values));
-  c += llt.solve(load(s, s.values - s.basis.transpose() * c));
+  double before = c.norm();
+  for (int round = 0; round < max_corrections; ++round) {
+    const MatrixXd correction = llt.solve(load(s, s.values - s.basis.transpose() * c));
+    c += correction;
+    if (!still_shrinking(correction.norm(), before, c.norm())) break;
+    before = correction.norm();
+  }
   return c;
+}
+
+/// Adds element contributions (size, components) to rows of the right-hand side, in element order.
+MatrixXd assemble(const Space& space, const std::vector<MatrixXd>& parts, std::size_t n) {
+  MatrixXd b = MatrixXd::Zero(index(space.dof_count()), index(n));
+  for (std::size_t e = 0; e < parts.size(); ++e) {
+    const std::span<const std::int32_t> dofs = space.dofs(ElementId(e));
+    for (std::size_t i = 0; i < dofs.size(); ++i) b.row(dofs[i]) += parts[e].row(index(i));
+  }
+  return b;
 }
 
 std::vector<double> project_continuous(const Space& space, const field_detail::RuleTable& rules,
                                        std::span<const Formula> components, int threads) {
   const std::size_t elements = space.mesh()->element_count();
   const std::size_t n = components.size();
-  std::vector<MatrixXd> mass(elements), rhs(elements);
+  std::vector<MatrixXd> mass(elements), part(elements);
   field_detail::for_elements(
       *space.mesh(),
       [&](ElementId e) {
         const Samples s = take_samples(space, e, rules(space.degree(e)), components);
         mass[e.index()] = mass_matrix(s);
-        rhs[e.index()] = load(s, s.values);
+        part[e.index()] = load(s, s.values);
       },
       threads);
   std::vector<Eigen::Triplet<double>> entries;
-  MatrixXd b = MatrixXd::Zero(index(space.dof_count()), index(n));
   for (std::size_t e = 0; e < elements; ++e) {
     const std::span<const std::int32_t> dofs = space.dofs(ElementId(e));
-    for (std::size_t i = 0; i < dofs.size(); ++i) {
-      b.row(dofs[i]) += rhs[e].row(index(i));
+    for (std::size_t i = 0; i < dofs.size(); ++i)
       for (std::size_t j = 0; j < dofs.size(); ++j)
         entries.emplace_back(dofs[i], dofs[j], mass[e](index(i), index(j)));
-    }
     mass[e].resize(0, 0);
   }
   Eigen::SparseMatrix<double> matrix(index(space.dof_count()), index(space.dof_count()));
   matrix.setFromTriplets(entries.begin(), entries.end());
   entries = {};
-  const MatrixXd x = field_detail::solve_mass(matrix, b);
+  const field_detail::MassSolver solver(matrix);
+  MatrixXd x = solver.solve(assemble(space, part, n));
+  double before = x.norm();
+  for (int round = 0; round < max_corrections; ++round) {
+    field_detail::for_elements(
+        *space.mesh(),
+        [&](ElementId e) {
+          const Samples s = take_samples(space, e, rules(space.degree(e)), components);
+          const std::span<const std::int32_t> dofs = space.dofs(e);
+          MatrixXd c(index(dofs.size()), index(n));
+          for (std::size_t i = 0; i < dofs.size(); ++i) c.row(index(i)) = x.row(dofs[i]);
+          part[e.index()] = load(s, s.values - s.basis.transpose() * c);
+        },
+        threads);
+    const MatrixXd correction = solver.solve(assemble(space, part, n));
+    x += correction;
+    if (!still_shrinking(correction.norm(), before, x.norm())) break;
+    before = correction.norm();
+  }
   std::vector<double> dofs(space.dof_count() * n);
   for (std::size_t i = 0; i < space.dof_count(); ++i)
     for (std::size_t k = 0; k < n; ++k) dofs[i * n + k] = x(index(i), index(k));
