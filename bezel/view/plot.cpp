@@ -1,0 +1,363 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "bezel/base/atomic_file.hpp"
+#include "bezel/base/error.hpp"
+#include "bezel/view/canvas.hpp"
+#include "bezel/view/draw.hpp"
+#include "bezel/view/ticks.hpp"
+
+namespace bezel {
+namespace {
+
+using view::Anchor;
+using view::Canvas;
+using view::Colour;
+using view::Path;
+using view::Stroke;
+using view::TextStyle;
+using view::Ticks;
+
+constexpr Colour ink{0.13, 0.13, 0.13, 1.0};
+constexpr Colour major_grid{0.80, 0.80, 0.80, 1.0}, minor_grid{0.92, 0.92, 0.92, 1.0};
+// The palette of M. Okabe and K. Ito, distinguishable with every kind of colour vision, without its
+// yellow; black last.
+constexpr std::array<const char*, 7> palette{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                             "#e69f00", "#56b4e9", "#000000"};
+constexpr int most_markers = 40;  // points of a series beyond which it is a curve without markers
+
+void check(const std::vector<Series>& series, const PlotOptions& options) {
+  if (series.empty()) throw InputError("nothing to plot: 0 series, expected at least 1");
+  for (const Series& s : series) {
+    const std::string place = "series \"" + s.name + "\": ";
+    if (s.x.size() != s.y.size())
+      throw InputError(place + std::to_string(s.x.size()) + " x values and " +
+                       std::to_string(s.y.size()) + " y values, expected as many");
+    if (s.x.empty()) throw InputError(place + "0 points, expected at least 1");
+    const auto check_values = [&](const char* name, const std::vector<double>& values,
+                                  bool logarithmic) {
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const std::string which = place + name + " value " + std::to_string(i + 1) + " is ";
+        if (!std::isfinite(values[i])) throw InputError(which + "not finite");
+        if (logarithmic && !(values[i] > 0.0))
+          throw InputError(which + std::to_string(values[i]) +
+                           ", expected above 0 on a logarithmic axis");
+      }
+    };
+    check_values("x", s.x, options.log_x);
+    check_values("y", s.y, options.log_y);
+  }
+  for (const auto& [name, value] : {std::pair{"width", options.width}, {"height", options.height}})
+    if (value < 64 || value > 16384)
+      throw InputError(std::string(name) + " " + std::to_string(value) +
+                       ", expected 64 to 16384 pixels");
+}
+
+/// One axis: data to a fraction of its length.
+struct Axis {
+  bool logarithmic = false;
+  double lo = 0.0, hi = 1.0;
+  Ticks ticks;
+  double operator()(double value) const {
+    if (logarithmic) return (std::log(value) - std::log(lo)) / (std::log(hi) - std::log(lo));
+    return (value / 2 - lo / 2) /
+           (hi / 2 - lo / 2);  // halves: the difference of huge values is finite
+  }
+};
+
+Axis make_axis(bool logarithmic, double lo, double hi, int count) {
+  Axis axis;
+  axis.logarithmic = logarithmic;
+  if (logarithmic) {
+    const double ratio = hi / lo;
+    const double pad = ratio > 1.0 + 1e-9 ? std::pow(ratio, 0.05) : 2.0;
+    axis.lo = std::max(lo / pad, 1e-307);
+    axis.hi = std::min(hi * pad, 1e307);
+    axis.ticks = view::log_ticks(axis.lo, axis.hi, count);
+  } else {
+    const double size = std::max(std::abs(lo), std::abs(hi));
+    double pad = 0.05 * (hi / 2 - lo / 2) * 2;
+    if (!(pad > 1e-12 * size)) pad = size > 0.0 ? 0.1 * size : 1.0;
+    axis.lo = std::max(lo - pad, -8e307);
+    axis.hi = std::min(hi + pad, 8e307);
+    axis.ticks = view::linear_ticks(axis.lo, axis.hi, count);
+  }
+  return axis;
+}
+
+enum class Shape { circle, square, triangle, diamond, down };
+constexpr std::array<Shape, 5> shapes{Shape::circle, Shape::square, Shape::diamond, Shape::triangle,
+                                      Shape::down};
+
+void add_marker(Path& path, Shape shape, const Vec2& p, double radius) {
+  if (shape == Shape::circle) {
+    path.circle(p, radius);
+    return;
+  }
+  // Regular polygons of about the circle's area.
+  const int sides = shape == Shape::square || shape == Shape::diamond ? 4 : 3;
+  const double turn = shape == Shape::square     ? 0.25
+                      : shape == Shape::diamond  ? 0.0
+                      : shape == Shape::triangle ? -0.25
+                                                 : 0.25;
+  const double r = radius * (sides == 4 ? 1.2 : 1.35);
+  for (int k = 0; k < sides; ++k) {
+    const double angle =
+        (shape == Shape::square ? std::numbers::pi / 4 : 2 * std::numbers::pi * turn) +
+        2 * std::numbers::pi * k / sides;
+    const Vec2 corner = p + r * Vec2{{std::cos(angle), std::sin(angle)}};
+    if (k == 0) {
+      path.move(corner);
+    } else {
+      path.line(corner);
+    }
+  }
+  path.close();
+}
+
+struct Look {
+  Colour colour;
+  Shape shape;
+  bool markers;
+};
+
+class Plot {
+ public:
+  Plot(const std::vector<Series>& series, const PlotOptions& options)
+      : series_(series), options_(options), unit_(std::clamp(options.width / 800.0, 0.5, 4.0)) {
+    Box2 data;
+    for (const Series& s : series)
+      for (std::size_t i = 0; i < s.x.size(); ++i) data.include(Vec2{{s.x[i], s.y[i]}});
+    const int across = std::clamp(static_cast<int>(options.width / (95.0 * unit_)), 2, 10);
+    const int up = std::clamp(static_cast<int>(options.height / (62.0 * unit_)), 2, 12);
+    x_ = make_axis(options.log_x, data.lo.x(), data.hi.x(), across);
+    y_ = make_axis(options.log_y, data.lo.y(), data.hi.y(), up);
+    label_ = TextStyle{14.0 * unit_, ink};
+    title_ = TextStyle{18.0 * unit_, ink, Anchor::middle};
+
+    double widest = 0.0;
+    for (std::size_t k = 0; k < y_.ticks.major.size(); ++k)
+      widest = std::max(widest, view::text_width(y_.ticks.labels[k], tick_style(y_, k)));
+    const double left =
+        14.0 * unit_ + (options.y_label.empty() ? 0.0 : 24.0 * unit_) + widest + 8.0 * unit_;
+    const double top = options.title.empty() ? 16.0 * unit_ : 44.0 * unit_;
+    const double bottom = 34.0 * unit_ + (options.x_label.empty() ? 0.0 : 24.0 * unit_);
+    frame_.include(Vec2{{std::min(left, 0.5 * options.width), top}});
+    frame_.include(Vec2{{options.width - 22.0 * unit_, options.height - bottom}});
+    for (std::size_t i = 0; i < series.size(); ++i)
+      looks_.push_back({view::parse_colour(palette[i % palette.size()]), shapes[i % shapes.size()],
+                        !series[i].dashed && series[i].x.size() <= most_markers});
+  }
+
+  void draw(Canvas& canvas) const {
+    draw_grid(canvas);
+    for (std::size_t i = 0; i < series_.size(); ++i) draw_series(canvas, i);
+    draw_frame(canvas);
+    draw_legend(canvas);
+  }
+
+ private:
+  TextStyle tick_style(const Axis& axis, std::size_t k) const {
+    TextStyle style = label_;
+    style.superscript = axis.ticks.superscripts[k];
+    return style;
+  }
+
+  Vec2 place(double fx, double fy) const {
+    return Vec2{{frame_.lo.x() + fx * (frame_.hi.x() - frame_.lo.x()),
+                 frame_.hi.y() - fy * (frame_.hi.y() - frame_.lo.y())}};
+  }
+
+  void draw_grid(Canvas& canvas) const {
+    const auto lines = [&](const std::vector<double>& xs, const std::vector<double>& ys,
+                           const Colour& colour, double width) {
+      Path path;
+      for (double v : xs) {
+        path.move(place(x_(v), 0.0));
+        path.line(place(x_(v), 1.0));
+      }
+      for (double v : ys) {
+        path.move(place(0.0, y_(v)));
+        path.line(place(1.0, y_(v)));
+      }
+      if (!path.pieces().empty()) canvas.stroke(path, {colour, width});
+    };
+    lines(x_.ticks.minor, y_.ticks.minor, minor_grid, 0.6 * unit_);
+    lines(x_.ticks.major, y_.ticks.major, major_grid, 0.8 * unit_);
+  }
+
+  void draw_frame(Canvas& canvas) const {
+    Path path;
+    path.rectangle(frame_);
+    const auto ticks = [&](const Axis& axis, bool horizontal) {
+      for (const auto& [values, length] :
+           {std::pair{&axis.ticks.major, 6.0}, {&axis.ticks.minor, 3.0}})
+        for (double v : *values) {
+          const Vec2 at = horizontal ? place(axis(v), 0.0) : place(0.0, axis(v));
+          path.move(at);
+          path.line(at + length * unit_ * (horizontal ? Vec2{{0.0, -1.0}} : Vec2{{1.0, 0.0}}));
+        }
+    };
+    ticks(x_, true);
+    ticks(y_, false);
+    canvas.stroke(path, {ink, 0.9 * unit_});
+
+    for (std::size_t k = 0; k < x_.ticks.major.size(); ++k) {
+      TextStyle style = tick_style(x_, k);
+      // Centred as a whole, superscript included (SVG viewers centre the run of both as well).
+      style.anchor = Anchor::middle;
+      canvas.text(place(x_(x_.ticks.major[k]), 0.0) + Vec2{{0.0, 20.0 * unit_}}, x_.ticks.labels[k],
+                  style);
+    }
+    for (std::size_t k = 0; k < y_.ticks.major.size(); ++k) {
+      TextStyle style = tick_style(y_, k);
+      style.anchor = Anchor::end;
+      canvas.text(place(0.0, y_(y_.ticks.major[k])) + Vec2{{-8.0 * unit_, 0.35 * label_.size}},
+                  y_.ticks.labels[k], style);
+    }
+    TextStyle name = label_;
+    name.size = 15.0 * unit_;
+    name.anchor = Anchor::middle;
+    if (!options_.x_label.empty())
+      canvas.text(Vec2{{frame_.centre().x(), options_.height - 12.0 * unit_}}, options_.x_label,
+                  name);
+    if (!options_.y_label.empty()) {
+      name.upwards = true;
+      canvas.text(Vec2{{22.0 * unit_, frame_.centre().y()}}, options_.y_label, name);
+    }
+    if (!options_.title.empty()) {
+      TextStyle style = title_;
+      const double room = options_.width - 20.0 * unit_,
+                   width = view::text_width(options_.title, style);
+      style.size *= std::clamp(room / std::max(width, 1.0), 0.5, 1.0);
+      const double half = 0.5 * view::text_width(options_.title, style);
+      const double centre =
+          std::min(frame_.centre().x(),
+                   std::max(0.5 * options_.width, options_.width - 10.0 * unit_ - half));
+      canvas.text(Vec2{{centre, 29.0 * unit_}}, options_.title, style);
+    }
+  }
+
+  std::vector<Vec2> points(std::size_t i) const {
+    const Series& s = series_[i];
+    std::vector<Vec2> out;
+    for (std::size_t k = 0; k < s.x.size(); ++k) out.push_back(place(x_(s.x[k]), y_(s.y[k])));
+    return out;
+  }
+
+  Stroke line_style(std::size_t i) const {
+    Stroke stroke{looks_[i].colour, 1.8 * unit_};
+    if (series_[i].dashed) stroke.dash = {7.0 * unit_, 5.0 * unit_};
+    return stroke;
+  }
+
+  void draw_line(Canvas& canvas, std::size_t i, const std::vector<Vec2>& points) const {
+    Path line, markers;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if (k == 0) {
+        line.move(points[k]);
+      } else {
+        line.line(points[k]);
+      }
+      add_marker(markers, looks_[i].shape, points[k], 4.0 * unit_);
+    }
+    if (points.size() > 1) canvas.stroke(line, line_style(i));
+    if (looks_[i].markers || points.size() == 1) canvas.fill(markers, looks_[i].colour);
+  }
+
+  void draw_series(Canvas& canvas, std::size_t i) const { draw_line(canvas, i, points(i)); }
+
+  void draw_legend(Canvas& canvas) const {
+    double widest = 0.0;
+    std::vector<std::size_t> named;
+    for (std::size_t i = 0; i < series_.size(); ++i) {
+      if (series_[i].name.empty()) continue;
+      named.push_back(i);
+      widest = std::max(widest, view::text_width(series_[i].name, label_));
+    }
+    if (named.empty()) return;
+    const double row = 21.0 * unit_, sample = 34.0 * unit_, inset = 10.0 * unit_;
+    const Vec2 size{
+        {3.0 * inset + sample + widest, inset + row * static_cast<double>(named.size())}};
+    const Vec2 corner = legend_corner(size);
+    Box2 box;
+    box.include(corner);
+    box.include(corner + size);
+    Path outline;
+    outline.rectangle(box);
+    canvas.fill(outline, Colour{1.0, 1.0, 1.0, 0.88});
+    canvas.stroke(outline, {major_grid, 0.8 * unit_});
+    for (std::size_t k = 0; k < named.size(); ++k) {
+      const double y = corner.y() + 0.5 * inset + row * (static_cast<double>(k) + 0.5);
+      const double x = corner.x() + inset;
+      Path line, marker;
+      line.move(Vec2{{x, y}});
+      line.line(Vec2{{x + sample, y}});
+      canvas.stroke(line, line_style(named[k]));
+      add_marker(marker, looks_[named[k]].shape, Vec2{{x + 0.5 * sample, y}}, 4.0 * unit_);
+      if (looks_[named[k]].markers) canvas.fill(marker, looks_[named[k]].colour);
+      canvas.text(Vec2{{x + sample + inset, y + 0.35 * label_.size}}, series_[named[k]].name,
+                  label_);
+    }
+  }
+
+  /// The corner or middle of a side that hides least of the curves; the first of equals.
+  Vec2 legend_corner(const Vec2& size) const {
+    const double inset = 12.0 * unit_;
+    const Vec2 lo = frame_.lo + Vec2{{inset, inset}}, hi = frame_.hi - size - Vec2{{inset, inset}};
+    Vec2 best = lo;
+    double least = INFINITY;
+    for (const auto& [fx, fy] : {std::pair{1.0, 0.0},
+                                 {0.0, 0.0},
+                                 {0.0, 1.0},
+                                 {1.0, 1.0},
+                                 {1.0, 0.5},
+                                 {0.0, 0.5},
+                                 {0.5, 0.0},
+                                 {0.5, 1.0}}) {
+      const Vec2 corner{{lo.x() + fx * (hi.x() - lo.x()), lo.y() + fy * (hi.y() - lo.y())}};
+      Box2 box;
+      box.include(corner - Vec2{{6.0 * unit_, 6.0 * unit_}});
+      box.include(corner + size + Vec2{{6.0 * unit_, 6.0 * unit_}});
+      double hidden = 0.0;  // length of curves below, a point for each marker
+      for (std::size_t i = 0; i < series_.size(); ++i) {
+        const std::vector<Vec2> p = points(i);
+        for (std::size_t k = 0; k < p.size(); ++k) {
+          if (box.contains(p[k])) hidden += 10.0;
+          if (k == 0) continue;
+          const int steps = std::clamp(static_cast<int>(norm(p[k] - p[k - 1]) / 4.0), 1, 1000);
+          for (int q = 0; q < steps; ++q)
+            if (box.contains(p[k - 1] + (static_cast<double>(q) / steps) * (p[k] - p[k - 1])))
+              hidden += 4.0;
+        }
+      }
+      if (hidden < least) {
+        least = hidden;
+        best = corner;
+      }
+    }
+    return best;
+  }
+
+  const std::vector<Series>& series_;
+  const PlotOptions& options_;
+  double unit_;
+  Axis x_, y_;
+  TextStyle label_, title_;
+  Box2 frame_;
+  std::vector<Look> looks_;
+};
+
+}  // namespace
+
+void plot(const std::string& path, const std::vector<Series>& series, const PlotOptions& options) {
+  view::check_extension(path);
+  check(series, options);
+  const std::unique_ptr<Canvas> canvas = view::make_canvas(path, options.width, options.height);
+  Plot(series, options).draw(*canvas);
+  write_file(path, canvas->finish());
+}
+
+}  // namespace bezel
