@@ -40,7 +40,7 @@ struct GenerateOptions {
 ///           exact
 /// @cost     measured 1.1 s for 1e5 unstructured linear triangles, 0.1 s for structured ones
 /// @limits   one size everywhere: a small hole in a large annulus has short edges next to long ones
-/// @source   [lenoir1986] for what inner control points must satisfy; [lagae2008] for the sampling
+/// @source   [lenoir1986] for what inner control points must satisfy; [feder1980] for the sampling
 TriangleMesh generate_rectangle(double width, double height, const GenerateOptions& options);
 TriangleMesh generate_disc(double radius, const GenerateOptions& options);
 /// @throws InputError also unless inner_radius < outer_radius

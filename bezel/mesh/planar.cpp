@@ -224,7 +224,7 @@ bool fill(Triangulation& t, const Domain& domain, RandomStream& random) {
   const std::size_t wanted =
       std::max(domain.least_points, static_cast<std::size_t>(std::max(inner, 0.0)));
 
-  // Saturated random sampling with distance r gives 0.70 / r^2 points per area [lagae2008]; 1.155 /
+  // Saturated random sampling with distance r gives 0.70 / r^2 points per area [feder1980]; 1.155 /
   // h^2 are wanted, which r = 0.75 h reaches shortly before saturation.
   Box2 box;
   for (const Vec2& p : t.points) box.include(p);
