@@ -95,7 +95,7 @@ IntersectSearch::IntersectSearch(const CurveCache& a, const CurveCache& b,
       out_(out),
       tol_(options.coincidence_distance),
       magnitude_(std::max(a.magnitude, b.magnitude)),
-      rounding_(0x1p-51 * magnitude_),
+      rounding_(0x1p-52 * magnitude_),
       tau_(std::max(tol_, rounding_)),
       margin_(std::max(tol_, 0x1p-53 * magnitude_)),
       size_(std::min(extent(a.box), extent(b.box))),
@@ -103,7 +103,7 @@ IntersectSearch::IntersectSearch(const CurveCache& a, const CurveCache& b,
 
 void IntersectSearch::run() {
   find_contacts();
-  if (!find_overlaps() && m_ > 0 && n_ > 0) {
+  if (!find_overlaps()) {
     descend(a_, 0.0, 1.0, 0, b_, 0.0, 1.0, 0);
     if (!parallel_.empty()) resolve_parallel();
   }

@@ -98,6 +98,12 @@ class FootSearch {
 
 }  // namespace
 
+/// All control points coincide to rounding: the curve counts as its point at parameter 0.
+bool IntersectSearch::is_point(const CurveCache& curve) const {
+  return curve.box.hi.x() - curve.box.lo.x() <= rounding_ &&
+         curve.box.hi.y() - curve.box.lo.y() <= rounding_;
+}
+
 void IntersectSearch::add_contact(double s, double t, bool a_end, bool b_end) {
   for (int i = 0; i < contact_count_; ++i) {
     Contact& c = contacts_[static_cast<std::size_t>(i)];
@@ -130,9 +136,10 @@ void IntersectSearch::find_contact(const Vec2& p, const CurveCache& curve, bool 
   const Vec2 first = curve.control.front() - p, last = curve.control.back() - p;
   const double tau_squared = tau * tau;
   const bool at_first = dot(first, first) <= tau_squared, at_last = dot(last, last) <= tau_squared;
-  if (at_first) add(0.0, true);
+  const bool point = is_point(curve);
+  if (at_first || (at_last && point)) add(0.0, true);
+  if (point) return;
   if (at_last) add(1.0, true);
-  if (degree == 0) return;
   // A straight curve that has p at an end has it nowhere else.
   if (degree == 1 && (at_first || at_last)) return;
   std::array<Vec2, max_curve_points> shifted;
@@ -159,9 +166,9 @@ void IntersectSearch::find_contact(const Vec2& p, const CurveCache& curve, bool 
 
 void IntersectSearch::find_contacts() {
   find_contact(a_[0], cb_, true, 0.0);
-  if (m_ > 0) find_contact(a_[m_], cb_, true, 1.0);
+  if (!is_point(ca_)) find_contact(a_[m_], cb_, true, 1.0);
   find_contact(b_[0], ca_, false, 0.0);
-  if (n_ > 0) find_contact(b_[n_], ca_, false, 1.0);
+  if (!is_point(cb_)) find_contact(b_[n_], ca_, false, 1.0);
   std::sort(contacts_.begin(), contacts_.begin() + contact_count_,
             [](const Contact& p, const Contact& q) { return p.s != q.s ? p.s < q.s : p.t < q.t; });
 }
@@ -213,7 +220,7 @@ bool IntersectSearch::coincide(const Contact& p, const Contact& q, double& gap) 
 
 /// @return true when an overlap leaves nothing else to look for
 bool IntersectSearch::find_overlaps() {
-  if (m_ == 0 || n_ == 0) return true;  // a point: contacts are all there is
+  if (is_point(ca_) || is_point(cb_)) return true;  // a point: contacts are all there is
   bool all = false;
   for (int i = 0; i + 1 < contact_count_; ++i) {
     const Contact &p = contacts_[static_cast<std::size_t>(i)],

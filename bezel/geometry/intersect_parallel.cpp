@@ -182,6 +182,18 @@ class ParallelPair {
     return t;
   }
 
+  /// b's parameter on the normal of a at s: what is reported.
+  double foot(double s) const {
+    double t = opposite(s);
+    const CurvePoint p = curve_point(f_.m_, f_.a_, s);
+    for (int i = 0; i < 2; ++i) {
+      const CurvePoint q = curve_point(f_.n_, f_.b_, t, p.value);
+      const double slope = dot(p.derivative, q.derivative);
+      if (slope != 0) t = std::clamp(t - dot(p.derivative, q.value) / slope, t0_, t1_);
+    }
+    return t;
+  }
+
   /// Restricts [s0, s1] to where b is opposite; notes whether the ends are ends of b.
   bool clip() {
     const Vec2 b0 = curve_point(f_.n_, f_.b_, reversed_ ? t1_ : t0_).value;
@@ -257,13 +269,15 @@ class ParallelPair {
     double error = 0;
     for (const double x : {0.0123, 0.2718, 0.5772, 0.9877})
       error = std::max(error, std::fabs(evaluate(piece.c, x) - sample(s0 + h * x).delta));
-    const double allowed =
-        exact_ ? 1e-12 * largest + 1e-28 * f_.magnitude_ : std::max(f_.tau_ / 32, f_.rounding_);
+    // The nodes themselves are rounded: that moves delta by u times its slope.
+    const double node_noise = 0x1p-50 * largest / h;
+    const double allowed = exact_ ? 1e-12 * largest + 1e-28 * f_.magnitude_ + node_noise
+                                  : std::max(f_.tau_ / 32, f_.rounding_);
     // Where delta stays far from zero its exact shape does not matter.
     const auto [least, most] = std::minmax_element(piece.c.begin(), piece.c.end());
     const double away = std::max(*least, -*most);
     const bool clear = away > f_.tau_ + 16 * error && away > 0;
-    piece.noise = 4 * error + 1e-13 * largest + (exact_ ? 1e-29 : 1e-16) * f_.magnitude_;
+    piece.noise = 4 * error + 1e-13 * largest + 1e-29 * f_.magnitude_ + (exact_ ? node_noise : 0.0);
     if (error <= allowed || clear || depth == 0 || !(h > 1e-12)) {
       if (!(error <= allowed) && !clear)
         f_.unresolved(s0, s1, std::min(opposite(s0), opposite(s1)),
@@ -337,7 +351,7 @@ class ParallelPair {
     }
     if (before * after < 0) {
       const double s = exact_ && s1 - s0 > 1e-12 ? exact_zero(s0, s1) : zero(s0, s1);
-      f_.add_crossing(s, opposite(s), s0, s1, std::min(ta, tb), std::max(ta, tb), sign, false);
+      f_.add_crossing(s, foot(s), s0, s1, std::min(ta, tb), std::max(ta, tb), sign, false);
       return;
     }
     // Touching: the smallest distance in between.
@@ -355,15 +369,11 @@ class ParallelPair {
       lo = std::max(s0, best_s - h);
       hi = std::min(s1, best_s + h);
     }
-    const bool at_border = (before == 0 && best_s <= s0) || (after == 0 && best_s >= s1);
-    const double t = opposite(best_s);
+    const double t = foot(best_s);
     if (before == 0 || after == 0) {
-      // At a border of these pieces the rest belongs to a neighbour, where the curves cross or
-      // part: known already when a crossing is near.
-      const Vec2 p = curve_point(f_.m_, f_.a_, best_s).value;
-      for (const Crossing& c : f_.out_.crossings)
-        if (norm(c.point_a - p) <= 64 * std::sqrt(f_.tau_ * f_.size_)) return;
-      if (at_border && best > 0.25 * f_.tau_) return;
+      // The pieces end here; what lies beyond belongs to a neighbour.
+      f_.halves_.push_back({s0, s1, t, before, after, reversed_});
+      return;
     }
     for (const Tangency& c : f_.out_.tangencies)
       if (std::fabs(c.s - best_s) <= 1e-6 && std::fabs(c.t - t) <= 1e-6) return;
@@ -392,7 +402,8 @@ class ParallelPair {
   }
 
   void overlap(const Segment& g, bool first, bool last) {
-    Overlap o{g.s0, g.s1, opposite(g.s0), opposite(g.s1), 0};
+    Overlap o{g.s0, g.s1, foot(g.s0), foot(g.s1),
+              std::max(std::fabs(delta_at(g.s0)), std::fabs(delta_at(g.s1)))};
     if (first && lo_is_b_) o.t0 = reversed_ ? t1_ : t0_;
     if (last && hi_is_b_) o.t1 = reversed_ ? t0_ : t1_;
     // Ends that are end points of a curve have their parameters from the contacts.
@@ -445,24 +456,11 @@ class ParallelPair {
     f_.out_.overlaps.push_back(o);
   }
 
-  /// Coincidence distance 0: overlaps are those between contacts; here only signs count.
+  /// Coincidence distance 0: overlaps are those between contacts; here only signs count. Where the
+  /// sign is lost in the interpolants' noise, which is relative to the largest distance on a piece,
+  /// zoom in.
   void read_exact() {
-    std::vector<Segment> list;
-    for (const Piece& p : pieces_) classify(p.c, p.noise, p.s0, p.s1, 48, list);
-    bool any = false;
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      const Segment& g = list[i];
-      const int before = i > 0 ? list[i - 1].state : 0,
-                after = i + 1 < list.size() ? list[i + 1].state : 0;
-      if (g.state == 0) {
-        event(g.s0, g.s1, before, after);
-        any = true;
-      } else if (i > 0 && list[i - 1].state != 0) {
-        event(g.s0, g.s0, before, g.state);
-        any = true;
-      }
-    }
-    if (any) return;
+    if (read_signs(0, 0, 6)) return;
     // No zero, but closer than the coordinates can tell: touching to rounding.
     std::vector<Segment> close;
     for (const Piece& p : pieces_) classify(p.c, 0.25 * f_.rounding_, p.s0, p.s1, 48, close);
@@ -470,6 +468,41 @@ class ParallelPair {
       if (close[i].state == 0)
         event(close[i].s0, close[i].s1, i > 0 ? close[i - 1].state : 0,
               i + 1 < close.size() ? close[i + 1].state : 0);
+  }
+
+  /// Events of the current pieces; the states beyond the first and the last, 0 when unknown.
+  bool read_signs(int first_state, int last_state, int zooms) {
+    std::vector<Segment> list;
+    for (const Piece& p : pieces_) classify(p.c, p.noise, p.s0, p.s1, 48, list);
+    const std::vector<Piece> pieces = pieces_;
+    bool any = false;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const Segment& g = list[i];
+      const int before = i > 0 ? list[i - 1].state : first_state;
+      const int after = i + 1 < list.size() ? list[i + 1].state : last_state;
+      if (g.state != 0) {
+        if (before != 0 && before != g.state) {
+          event(g.s0, g.s0, before, g.state);
+          any = true;
+        }
+        continue;
+      }
+      const double width = g.s1 - g.s0;
+      const double lo = std::max(pieces.front().s0, g.s0 - width),
+                   hi = std::min(pieces.back().s1, g.s1 + width);
+      if (zooms > 0 && width > 1e-10 && hi - lo < 0.5 * (pieces.back().s1 - pieces.front().s0)) {
+        pieces_.clear();
+        interpolate(lo, hi, 6);
+        any = read_signs(lo < g.s0 ? before : first_state, hi > g.s1 ? after : last_state,
+                         zooms - 1) ||
+              any;
+        pieces_ = pieces;
+      } else {
+        event(g.s0, g.s1, before, after);
+        any = true;
+      }
+    }
+    return any;
   }
 
   IntersectSearch& f_;
@@ -499,6 +532,50 @@ bool IntersectSearch::graph_like(const Vec2* pa, const Vec2* pb) const {
       return false;
   }
   return true;
+}
+
+/// Halves that meet at a common border make one event; the others are the shoulder of something
+/// known, or curve ends.
+void IntersectSearch::join_halves() {
+  constexpr double slack = 1e-9;
+  std::sort(halves_.begin(), halves_.end(), [](const HalfEvent& p, const HalfEvent& q) {
+    return p.s0 != q.s0 ? p.s0 < q.s0 : p.t < q.t;
+  });
+  for (std::size_t i = 0; i < halves_.size(); ++i)
+    for (std::size_t j = i + 1; j < halves_.size();) {
+      HalfEvent &p = halves_[i], &q = halves_[j];
+      if (q.s0 <= p.s1 + slack && std::fabs(q.t - p.t) <= slack + 2 * (p.s1 - p.s0 + q.s1 - q.s0)) {
+        p.s1 = std::max(p.s1, q.s1);
+        if (p.before == 0) p.before = q.before;
+        if (p.after == 0 || q.after != 0) p.after = q.after;
+        halves_.erase(halves_.begin() + static_cast<std::ptrdiff_t>(j));
+      } else {
+        ++j;
+      }
+    }
+  for (const HalfEvent& h : halves_) {
+    const double s = 0.5 * (h.s0 + h.s1);
+    const auto near = [&](double other_s, double other_t) {
+      const double reach = slack + h.s1 - h.s0;
+      return std::fabs(other_s - s) <= reach && std::fabs(other_t - h.t) <= 4 * reach;
+    };
+    const bool crossing = h.before * h.after < 0;
+    const auto known = [&] {
+      for (const Crossing& c : out_.crossings)
+        if (near(c.s, c.t)) return true;
+      for (const Tangency& c : out_.tangencies)
+        if (near(c.s, c.t)) return true;
+      for (const Overlap& o : out_.overlaps)
+        if (near(o.s0, o.t0) || near(o.s1, o.t1)) return true;
+      return false;
+    };
+    if (known()) continue;
+    if (crossing)
+      add_crossing(s, h.t, h.s0, h.s1, h.t, h.t, h.reversed ? -h.after : h.after, false);
+    else
+      out_.tangencies.push_back({s, h.t, 0});
+  }
+  halves_.clear();
 }
 
 void IntersectSearch::analyse(double s0, double s1, double t0, double t1) {
@@ -555,6 +632,7 @@ void IntersectSearch::resolve_parallel() {
     });
     resolve_cluster(cluster);
   }
+  join_halves();
 }
 
 }  // namespace bezel::geometry_kernel

@@ -25,6 +25,14 @@ struct ParallelBox {
   double s0, s1, t0, t1;
 };
 
+/// Where nearly parallel pieces end while the curves are together: [s0, s1] on a, the state (sign
+/// of the distance) before and after, 0 where it lies beyond the pieces.
+struct HalfEvent {
+  double s0, s1, t;
+  int before, after;
+  bool reversed;
+};
+
 class IntersectSearch {
  public:
   IntersectSearch(const CurveCache& a, const CurveCache& b, const IntersectOptions& options,
@@ -35,6 +43,7 @@ class IntersectSearch {
   // Contacts (intersect_contacts.cpp).
   void find_contacts();
   void find_contact(const Vec2& p, const CurveCache& curve, bool of_a, double end);
+  bool is_point(const CurveCache& curve) const;
   void add_contact(double s, double t, bool a_end, bool b_end);
   bool find_overlaps();
   bool coincide(const Contact& p, const Contact& q, double& gap) const;
@@ -54,6 +63,7 @@ class IntersectSearch {
   bool graph_like(const Vec2* pa, const Vec2* pb) const;
   void resolve_parallel();
   void resolve_cluster(std::span<const ParallelBox> boxes);
+  void join_halves();
   void analyse(double s0, double s1, double t0, double t1);
   friend class ParallelPair;
 
@@ -63,7 +73,7 @@ class IntersectSearch {
   CurveIntersections& out_;
   double tol_;        // the caller's coincidence distance
   double magnitude_;  // largest |coordinate| of both curves
-  double rounding_;   // 4 u magnitude
+  double rounding_;   // 2 u magnitude
   double tau_;        // distance that counts as touching: max(tol, rounding)
   double margin_;     // boxes further apart than this hold nothing
   double size_;       // extent of the smaller curve
@@ -72,6 +82,7 @@ class IntersectSearch {
   std::array<Contact, 16> contacts_;
   int contact_count_ = 0;
   std::vector<ParallelBox> parallel_;
+  std::vector<HalfEvent> halves_;
 };
 
 }  // namespace bezel::geometry_kernel
