@@ -30,12 +30,12 @@ double down(double x) {
   return std::nextafter(x, -infinity);
 }
 
-// A part of the domain: its coefficients and the largest of them.
+// A part of the domain: its coefficients and a proven upper bound of the values on it.
 struct Part {
   std::vector<double> b;
-  double largest;
+  double bound;
   int depth;
-  bool operator<(const Part& other) const { return largest < other.largest; }
+  bool operator<(const Part& other) const { return bound < other.bound; }
 };
 
 // Upper bound of the maximum, within tol (and rounding) of it. `corners` are the coefficients that
@@ -53,30 +53,22 @@ double upper_bound(int d, std::vector<double> b, double tol,
   for (const double c : b) magnitude = std::max(magnitude, std::fabs(c));
   const double slack_per_split = d * (magnitude * 0x1.0000000001p-53 + 0x1p-1073);
 
-  double attained = -infinity;
-  const auto see = [&](const Part& part) {
-    for (const std::size_t corner : corners)
-      attained = std::max(attained, down(part.b[corner] - part.depth * slack_per_split));
-  };
+  double attained = -infinity;  // a proven lower bound of the maximum
   std::priority_queue<Part> queue;
-  Part whole{std::move(b), top, 0};
-  see(whole);
-  queue.push(std::move(whole));
+  const auto add = [&](std::vector<double> c, int depth) {
+    const double slack = depth * slack_per_split;
+    for (const std::size_t corner : corners)
+      attained = std::max(attained, depth == 0 ? c[corner] : down(c[corner] - slack));
+    const double largest = *std::max_element(c.begin(), c.end());
+    queue.push({std::move(c), depth == 0 ? largest : std::min(top, up(largest + slack)), depth});
+  };
+  add(std::move(b), 0);
   for (int splits = 0;; ++splits) {
     const Part part = queue.top();
-    const double bound = part.depth == 0 ? top : up(part.largest + part.depth * slack_per_split);
-    if (bound <= attained + tol || part.depth >= max_depth || splits >= max_splits) {
-      // Parts deeper down may carry a larger slack than the one on top of the queue.
-      const double deepest = up(part.largest + max_depth * slack_per_split);
-      return std::min(top, part.depth == 0 ? top : deepest);
-    }
+    if (part.bound <= attained + tol || part.depth >= max_depth || splits >= max_splits)
+      return part.bound;
     queue.pop();
-    for (std::vector<double>& child : split(part.b)) {
-      const double largest = *std::max_element(child.begin(), child.end());
-      Part next{std::move(child), largest, part.depth + 1};
-      see(next);
-      queue.push(std::move(next));
-    }
+    for (std::vector<double>& child : split(part.b)) add(std::move(child), part.depth + 1);
   }
 }
 
@@ -85,8 +77,10 @@ Range enclose(int d, std::span<const double> b, double tol, const std::vector<st
               const Split& split) {
   if (!(tol >= 0.0))
     throw InputError("range tolerance is " + std::to_string(tol) + ", expected at least 0");
-  const auto [lo, hi] = std::minmax_element(b.begin(), b.end());
-  if (tol == 0.0 || d == 0) return {*lo, *hi};
+  if (tol == 0.0 || d == 0) {
+    const auto [lo, hi] = std::minmax_element(b.begin(), b.end());
+    return {*lo, *hi};
+  }
   std::vector<double> negated(b.begin(), b.end());
   for (double& c : negated) c = -c;
   return {-upper_bound(d, std::move(negated), tol, corners, split),

@@ -202,10 +202,10 @@ std::vector<Root> roots(std::span<const double> b) {
   // largest, so that nothing over- or underflows on the way.
   double magnitude = 0.0;
   for (const double c : b) magnitude = std::max(magnitude, std::fabs(c));
-  const double scale = std::ldexp(1.0, -std::ilogb(magnitude));
+  const int exponent = std::ilogb(magnitude);
   Coefficients c;
   for (int i = first; i <= last; ++i) {
-    const double x = b[static_cast<std::size_t>(i)] * scale;
+    const double x = std::ldexp(b[static_cast<std::size_t>(i)], -exponent);
     if (first == 0 && last == d) {
       c.push_back({DoubleDouble(x), 0.0});
       continue;
