@@ -17,6 +17,7 @@ using bezel::IntersectOptions;
 using bezel::Vec2;
 using Points = std::vector<Vec2>;
 using geometry_test::evaluate;
+using geometry_test::part;
 using geometry_test::show;
 
 Points exchanged(Points c) {
@@ -30,20 +31,6 @@ Points moved(Points c, const Vec2& by) {
 Points scaled(Points c, double by) {
   for (Vec2& p : c) p *= by;
   return c;
-}
-/// By de Casteljau extrapolation: the control points of c on [s0, s1].
-Points part(const Points& c, double s0, double s1) {
-  const std::size_t n = c.size();
-  Points result;
-  for (std::size_t k = 0; k < n; ++k) {  // blossom with k arguments s1, the others s0
-    Points q = c;
-    for (std::size_t d = n - 1; d > 0; --d) {
-      const double s = d <= k ? s1 : s0;
-      for (std::size_t i = 0; i < d; ++i) q[i] = (1 - s) * q[i] + s * q[i + 1];
-    }
-    result.push_back(q[0]);
-  }
-  return result;
 }
 Points elevated(const Points& c) {
   const std::size_t n = c.size();

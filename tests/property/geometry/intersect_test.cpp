@@ -235,4 +235,88 @@ TEST(IntersectProperty, JitteredCopies) {
   }
 }
 
+/// Graphs y = f(x) and y = f(x) + e h(x), e from 1e-17 to 1, b on its own interval, either way
+/// round: the events must tell the story of the sign of h, which is known.
+TEST(IntersectProperty, PerturbedGraphs) {
+  RandomStream random("PerturbedGraphs", 1);
+  constexpr double tol = 1e-13;
+  int overlaps = 0, crossings = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const int degree = 1 + static_cast<int>(random.below(4));
+    const double scale = std::pow(10.0, random.uniform(-17, 0));
+    // h has roots where its random Bernstein coefficients change sign; sometimes a double one.
+    std::vector<double> f, h;
+    for (int i = 0; i <= degree; ++i) {
+      f.push_back(random.uniform(-0.2, 0.2));
+      h.push_back(scale * random.uniform(-1, 1));
+    }
+    if (degree == 2 && random.below(3) == 0) {
+      const double r = random.uniform();
+      h = {scale * r * r, -scale * r * (1 - r), scale * (1 - r) * (1 - r)};
+    }
+    double x0 = 0, x1 = 1;  // b's interval of a's parameter
+    const auto kind = random.below(4);
+    if (kind == 1) x0 = random.uniform(-0.5, 0.5), x1 = random.uniform(0.6, 1.5);
+    if (kind == 2) x1 = random.uniform(0.2, 1);
+    if (kind == 3) x0 = 0.25, x1 = 0.75;
+    Points a, whole;
+    for (int i = 0; i <= degree; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      a.push_back(Vec2{{static_cast<double>(i) / degree, f[k]}});
+      whole.push_back(Vec2{{static_cast<double>(i) / degree, f[k] + h[k]}});
+    }
+    Points b = kind == 0 ? whole : geometry_test::part(whole, x0, x1);
+    const bool reversed = random.below(2) == 1;
+    if (reversed) std::reverse(b.begin(), b.end());
+    IntersectOptions options;
+    options.coincidence_distance = tol;
+    const auto found = intersect(a, b, options);
+    const auto gap = [&](double s) { return evaluate(whole, s).y() - evaluate(a, s).y(); };
+    EXPECT_TRUE(found.unresolved.empty()) << trial << show(a, b, found);
+    overlaps += static_cast<int>(found.overlaps.size());
+    crossings += static_cast<int>(found.crossings.size());
+    for (std::size_t i = 0; i < found.overlaps.size(); ++i) {
+      const auto& o = found.overlaps[i];
+      EXPECT_EQ(o.t0 > o.t1, reversed) << trial << show(a, b, found);
+      for (int k = 0; k <= 10; ++k) {
+        // Vertical distance is at most 1.6 times the perpendicular one at these slopes (|f'|
+        // < 1.3).
+        EXPECT_LE(std::fabs(gap(o.s0 + (o.s1 - o.s0) * k / 10)), 1.7 * 1.04 * tol)
+            << trial << show(a, b, found);
+      }
+      for (const auto& c : found.crossings)
+        EXPECT_FALSE(c.s >= o.s0 && c.s <= o.s1) << trial << show(a, b, found);
+      if (i > 0) {
+        EXPECT_LT(found.overlaps[i - 1].s1, o.s0) << trial << show(a, b, found);
+      }
+    }
+    // Between samples clear of the band, the signs of the crossings add up, unless an overlap lies
+    // between.
+    const double lo = std::max(0.0, x0), hi = std::min(1.0, x1);
+    double last = -1;
+    for (int k = 1; k < 60; ++k) {
+      const double s = lo + (hi - lo) * k / 60;
+      if (std::fabs(gap(s)) < 2 * tol) continue;
+      if (last >= 0) {
+        int sum = 0, unknown = 0;
+        for (const auto& c : found.crossings)
+          if (c.s > last && c.s < s) {
+            sum += reversed ? -c.sign : c.sign;
+            unknown += c.sign == 0;
+          }
+        bool overlap = false;
+        for (const auto& o : found.overlaps) overlap = overlap || (o.s1 > last && o.s0 < s);
+        const int expected = (gap(s) > 0) - (gap(last) > 0);
+        if (!overlap && unknown == 0) {
+          EXPECT_EQ(sum, expected)
+              << trial << " between " << last << " and " << s << show(a, b, found);
+        }
+      }
+      last = s;
+    }
+  }
+  EXPECT_GT(overlaps, 1000);
+  EXPECT_GT(crossings, 1000);
+}
+
 }  // namespace

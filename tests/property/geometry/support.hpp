@@ -32,6 +32,20 @@ inline Points random_points(bezel::RandomStream& random, int degree, int bits = 
   return points;
 }
 
+/// By de Casteljau extrapolation: the control points of c on [s0, s1].
+inline Points part(const Points& c, double s0, double s1) {
+  const std::size_t n = c.size();
+  Points result;
+  for (std::size_t k = 0; k < n; ++k) {  // blossom with k arguments s1, the others s0
+    Points q = c;
+    for (std::size_t d = n - 1; d > 0; --d) {
+      const double s = d <= k ? s1 : s0;
+      for (std::size_t i = 0; i < d; ++i) q[i] = (1 - s) * q[i] + s * q[i + 1];
+    }
+    result.push_back(q[0]);
+  }
+  return result;
+}
 inline std::string show(const Points& a, const Points& b, const bezel::CurveIntersections& found) {
   std::ostringstream text;
   text << std::hexfloat;
