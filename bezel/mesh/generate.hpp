@@ -10,7 +10,7 @@ namespace bezel {
 
 enum class Pattern {
   structured,   ///< a regular pattern
-  unstructured  ///< random interior points (seeded), Delaunay by Qhull, then smoothing sweeps
+  unstructured  ///< random interior points (seeded), Delaunay, then smoothing sweeps
 };
 
 struct GenerateOptions {
