@@ -45,6 +45,14 @@ std::vector<double> component_of(const Field& field, ElementId e, int component)
   return c;
 }
 
+/// Bound of the rounding error of Frame::lambda at a point.
+double lambda_error(const Frame& frame, const Vec2& p) {
+  const Vec2 r = p - frame.centre;
+  double size = 1.0;
+  for (const Vec2& g : frame.gradient) size += std::abs(g.x() * r.x()) + std::abs(g.y() * r.y());
+  return 4.0 * u * size;
+}
+
 bool composable(const Field& field, ElementId e) {
   return field.space().basis() == Basis::reference ||
          field.space().degree(e) * field.mesh().degree() <= bernstein::max_triangle_degree;
@@ -165,16 +173,18 @@ ReferencePolynomial reference_polynomial(const Field& field, ElementId e, int co
   // v).
   const field_detail::ElementMap map(field.mesh(), e);
   std::array<std::vector<double>, 3> lambda;
-  double growth = 1.0;
+  double growth = 1.0, rounding = 0.0;
   for (const Vec2& p : map.control()) {
     const Lambda l = space.frame(e).lambda(p);
+    rounding = std::max(rounding, lambda_error(space.frame(e), p));
     for (std::size_t k = 0; k < 3; ++k) lambda[k].push_back(l[k]);
     growth = std::max(growth, std::abs(l[0]) + std::abs(l[1]) + std::abs(l[2]));
   }
   // Each of the d steps multiplies by lambda and adds: a coefficient of a product is a sum of at
-  // most triangle_size(g) products of relative error a few u, and the weights of its terms sum to
-  // 1; lambda itself is within 8u.
-  const double bound = 2.0 * d * (triangle_size(g) + 16) * u * std::pow(growth, d) * largest(c);
+  // most triangle_size(g) products of relative error a few u whose weights sum to 1, and three
+  // lambda are off by `rounding` each. Twice the first-order sum covers the higher orders.
+  const double step = (triangle_size(g) + 8) * u * growth + 3.0 * rounding;
+  const double bound = 2.0 * d * step * std::pow(growth, d) * largest(c);
   std::vector<std::vector<double>> layer;
   for (const double x : c) layer.push_back({x});
   for (int r = 1; r <= d;
@@ -248,7 +258,9 @@ Range value_range(const Field& field, int component, double rel_tol) {
     result.lo = std::min(result.lo, r.lo);
     result.hi = std::max(result.hi, r.hi);
   }
-  return result;
+  // Outward rounding of the sharpened bounds may overshoot the coefficients, which are bounds
+  // themselves.
+  return {std::max(result.lo, all.lo), std::min(result.hi, all.hi)};
 }
 
 }  // namespace bezel

@@ -13,63 +13,55 @@
 namespace bezel {
 namespace {
 
-constexpr double aspect_limit = 8.0;
-constexpr double circumradius = 1.25;  // in half diagonals of the box
-// Elements thinner than this (or collinear) get a frame of this aspect: the mass matrix fails
+// Elements thinner than this (or collinear) get a frame of this thickness: the mass matrix fails
 // first.
 constexpr double thinnest = 1e-10;
+// sqrt(3)/2, the tangent of a corner of the equilateral triangle being twice it.
+constexpr double half_root3 = 0.86602540378443864676;
 
 bool finite(const Vec2& p) {
   return std::isfinite(p.x()) && std::isfinite(p.y());
 }
 
-/// Unit vector of the larger eigenvalue and the aspect ratio of the control points' covariance.
-struct Principal {
-  Vec2 axis;
-  double aspect;
-};
-
-Principal principal(std::span<const Vec2> control, const Box2& box) {
-  Vec2 mean{};
-  for (const Vec2& p : control) mean += p - box.lo;
-  mean *= 1.0 / static_cast<double>(control.size());
+/// Unit eigenvector of the larger eigenvalue of the covariance of points.
+Vec2 principal_axis(std::span<const Vec2> points) {
   double xx = 0.0, xy = 0.0, yy = 0.0;
-  for (const Vec2& p : control) {
-    const Vec2 r = p - box.lo - mean;
+  for (const Vec2& r : points) {
     xx += r.x() * r.x();
     xy += r.x() * r.y();
     yy += r.y() * r.y();
   }
   const double half = 0.5 * (xx - yy);
   const double root = std::sqrt(half * half + xy * xy);
-  const double large = 0.5 * (xx + yy) + root;
-  // det / large instead of trace/2 - root: no cancellation beyond that of the determinant itself.
-  const double small = std::max(0.0, (xx * yy - xy * xy) / large);
-  Vec2 axis = half >= 0.0 ? Vec2{root + half, xy} : Vec2{xy, root - half};
+  const Vec2 axis = half >= 0.0 ? Vec2{root + half, xy} : Vec2{xy, root - half};
   const double length = norm(axis);
-  axis = length > 0.0 ? axis * (1.0 / length) : Vec2{1.0, 0.0};
-  const double aspect =
-      small > 0.0 ? std::sqrt(large / small) : std::numeric_limits<double>::infinity();
-  return {axis, aspect};
+  return length > 0.0 ? axis * (1.0 / length) : Vec2{1.0, 0.0};
 }
 
-/// Directions of the corners of an equilateral triangle: lower left, lower right, top.
-std::array<Vec2, 3> directions() {
-  const double half_root3 = 0.5 * std::sqrt(3.0);
-  return {Vec2{-half_root3, -0.5}, Vec2{half_root3, -0.5}, Vec2{0.0, 1.0}};
+/// Points of the plane as complex numbers, for products.
+Vec2 times(const Vec2& a, const Vec2& b) {
+  return {a.x() * b.x() - a.y() * b.y(), a.x() * b.y() + a.y() * b.x()};
+}
+Vec2 cube(const Vec2& a) {
+  return times(times(a, a), a);
 }
 
-/// lambda_k = 1 at centre + radius * A d_k means gradient_k = 2/3 / radius * A^-T d_k.
-Frame make_frame(const Vec2& centre, const Vec2& axis, double radius_along, double radius_across) {
-  const std::array<Vec2, 3> d = directions();
-  const Vec2 across{-axis.y(), axis.x()};
-  Frame frame;
-  frame.centre = centre;
-  for (std::size_t k = 0; k < 2; ++k)
-    frame.gradient[k] = axis * (2.0 / 3.0 / radius_along * d[k].x()) +
-                        across * (2.0 / 3.0 / radius_across * d[k].y());
-  frame.gradient[2] = -(frame.gradient[0] + frame.gradient[1]);
-  return frame;
+/// A unit vector w with w^3 in the direction of s: Newton's method from the best of six directions,
+/// in arithmetic only, since the bits of trigonometric functions depend on the machine.
+Vec2 cube_root_direction(const Vec2& s) {
+  const double size = norm(s);
+  if (!(size > 0.0)) return {1.0, 0.0};
+  const Vec2 unit = s * (1.0 / size);
+  Vec2 w{1.0, 0.0};
+  for (const Vec2& start : {Vec2{half_root3, 0.5}, Vec2{half_root3, -0.5}, Vec2{-1.0, 0.0}})
+    if (dot(cube(start), unit) > dot(cube(w), unit)) w = start;
+  for (int step = 0; step < 8; ++step) {
+    const Vec2 square = times(w, w);
+    const Vec2 inverse = Vec2{square.x(), -square.y()} * (1.0 / dot(square, square));
+    w = (2.0 * w + times(unit, inverse)) * (1.0 / 3.0);
+    w = w * (1.0 / norm(w));
+  }
+  return w;
 }
 
 void check_mesh(const std::shared_ptr<const TriangleMesh>& mesh) {
@@ -124,25 +116,61 @@ Frame element_frame(std::span<const Vec2> control) {
     if (!finite(p)) throw InputError("a control point is not finite");
     box.include(p);
   }
-  const double diagonal = box.diameter();
-  if (!(diagonal > 0.0))
+  if (!(box.diameter() > 0.0))
     throw InputError("all control points of an element coincide, expected a triangle");
-  const Principal main = principal(control, box);
-  if (main.aspect <= aspect_limit) {
-    const double radius = circumradius * 0.5 * diagonal;
-    return make_frame(box.centre(), Vec2{1.0, 0.0}, radius, radius);
+
+  // z = L^-1 Q^T (p - start): covariance 1. Turning to the principal axes first keeps the digits of
+  // thin elements.
+  const std::size_t n = control.size();
+  Vec2 mean{};
+  for (const Vec2& p : control) mean += p - box.lo;
+  const Vec2 start = box.lo + mean * (1.0 / static_cast<double>(n));
+  std::vector<Vec2> z(control.begin(), control.end());
+  for (Vec2& p : z) p -= start;
+  const Vec2 along = principal_axis(z), across{-along.y(), along.x()};
+  double ll = 0.0, lc = 0.0, cc = 0.0;
+  for (Vec2& p : z) {
+    p = {dot(along, p), dot(across, p)};
+    ll += p.x() * p.x();
+    lc += p.x() * p.y();
+    cc += p.y() * p.y();
   }
-  const Vec2 across{-main.axis.y(), main.axis.x()};
-  const Vec2 start = box.centre();
-  Box2 turned;
-  for (const Vec2& p : control)
-    turned.include(Vec2{dot(main.axis, p - start), dot(across, p - start)});
-  const Vec2 middle = turned.centre();
-  const double along = 0.5 * (turned.hi.x() - turned.lo.x());
-  const double thick = std::max(0.5 * (turned.hi.y() - turned.lo.y()), thinnest * along);
-  const double scale = circumradius * std::sqrt(2.0);  // the square's half diagonal is sqrt 2
-  return make_frame(start + main.axis * middle.x() + across * middle.y(), main.axis, scale * along,
-                    scale * thick);
+  const double l11 = std::sqrt(ll), l21 = lc / l11;
+  const double l22 = std::max(std::sqrt(std::max(0.0, cc - l21 * l21)), thinnest * l11);
+  for (Vec2& p : z) p = {p.x() / l11, (p.y() - p.x() / l11 * l21) / l22};
+
+  // The equilateral triangle whose three-fold direction is that of the points, corner 0 nearest to
+  // the first point.
+  Vec2 third{};
+  for (const Vec2& p : z) third += cube(p);
+  const Vec2 root = cube_root_direction(third);
+  const Vec2 turn{-0.5, half_root3};
+  std::array<Vec2, 3> d{root, times(root, turn), times(times(root, turn), turn)};
+  while (dot(d[0], z[0]) < dot(d[1], z[0]) || dot(d[0], z[0]) < dot(d[2], z[0]))
+    d = {d[1], d[2], d[0]};
+
+  // The smallest such triangle around all points: side k lies at distance reach[k] from z = 0.
+  std::array<double, 3> reach{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    reach[k] = -dot(d[k], z[0]);
+    for (const Vec2& p : z) reach[k] = std::max(reach[k], -dot(d[k], p));
+  }
+  const double inradius = (reach[0] + reach[1] + reach[2]) / 3.0;
+  // d_k . c = inradius - reach_k, with sum over k of d_k d_k^T = 3/2.
+  Vec2 c{};
+  for (std::size_t k = 0; k < 3; ++k) c += d[k] * (2.0 / 3.0 * (inradius - reach[k]));
+
+  // lambda_k = 1/3 + d_k . (z - c) / (3 inradius).
+  Frame frame;
+  const double y = l21 * c.x() + l22 * c.y();
+  frame.centre = start + along * (l11 * c.x()) + across * y;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Vec2 g = d[k] * (1.0 / (3.0 * inradius));
+    const double gy = g.y() / l22, gx = (g.x() - gy * l21) / l11;  // L^-T g
+    frame.gradient[k] = along * gx + across * gy;
+  }
+  frame.gradient[2] = -(frame.gradient[0] + frame.gradient[1]);
+  return frame;
 }
 
 std::size_t Space::offset(ElementId e) const {

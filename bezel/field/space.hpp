@@ -25,12 +25,13 @@ enum class Continuity { discontinuous, continuous };
 struct Frame {
   Vec2 centre;
   std::array<Vec2, 3> gradient;
-  /// Barycentric coordinates of a point; they sum to 1 up to rounding, and are negative outside the
-  /// frame.
+  /// Barycentric coordinates of a point; negative outside the frame. The first is 1 minus the
+  /// others, so that they sum to 1 within u even on razor-thin frames, where rounding in the
+  /// products would scale a polynomial's value.
   std::array<double, 3> lambda(const Vec2& x) const {
     const Vec2 r = x - centre;
-    return {1.0 / 3.0 + dot(gradient[0], r), 1.0 / 3.0 + dot(gradient[1], r),
-            1.0 / 3.0 + dot(gradient[2], r)};
+    const double l1 = 1.0 / 3.0 + dot(gradient[1], r), l2 = 1.0 / 3.0 + dot(gradient[2], r);
+    return {1.0 - l1 - l2, l1, l2};
   }
   /// The point with the given barycentric coordinates (sum 1): the inverse of lambda().
   Vec2 point(const std::array<double, 3>& lambda) const;
@@ -39,17 +40,21 @@ struct Frame {
   friend bool operator==(const Frame&, const Frame&) = default;
 };
 
-/// The frame a physical basis uses for an element.
+/// The frame a physical basis uses for an element: a triangle that fits it closely and holds its
+/// control points.
 ///
-/// An equilateral triangle around the centre of the control points' bounding box, circumradius 1.25
-/// times the box's half diagonal. When the aspect ratio (square root of the ratio of the
-/// eigenvalues of the control points' covariance) exceeds 8, the box is taken along the principal
-/// axes and the triangle, equilateral once the box is scaled to a square, is stretched with it
-/// (else high degrees lose all digits).
+/// An affine map gives the control points covariance 1; there the frame is the smallest equilateral
+/// triangle around them whose three corners point along their third moment, corner 0 nearest to the
+/// first control point. So it is the element itself when that is straight, varies continuously with
+/// the control points, commutes with affine maps, and needs no corner triangle (which may be
+/// degenerate on a curved element). Bernstein polynomials on it are as well conditioned as the
+/// reference ones: a frame twice too large costs a factor 4^degree in the mass matrix.
 ///
 /// @param control  control points of the element, finite, not all equal
 /// @throws InputError when control is empty, a value is not finite, or all points coincide
-/// @accuracy barycentrics of the element's control points lie within -0.201 .. 0.867
+/// @accuracy barycentrics of the control points lie within -1e-14 .. 1 + 1e-14 at moderate size and
+/// distance from the
+///           origin; rounding adds 4u |x| / (smallest height of the element)
 Frame element_frame(std::span<const Vec2> control);
 
 /// Basis, degree per element, continuity and the map coefficients = A * dofs. Immutable; cheap to
