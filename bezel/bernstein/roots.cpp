@@ -133,6 +133,11 @@ class Finder {
   void bracket(const Piece& piece) {
     const int left_sign = piece.c.front().sign();
     double a = piece.lo.hi, b = (piece.lo + piece.width).hi;
+    if ((piece.lo.lo != 0.0 && value(a).sign() != left_sign) ||
+        ((piece.lo + piece.width).lo != 0.0 && value(b).sign() != -left_sign)) {
+      cluster(piece);  // its ends are no doubles, and the root is closer to one than a double
+      return;
+    }
     DoubleDouble fa = piece.c.front().value, fb = piece.c.back().value;
     double wa = fa.hi, wb = fb.hi;
     for (int i = 0; i < 2200; ++i) {
