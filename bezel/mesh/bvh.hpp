@@ -14,9 +14,10 @@ namespace bezel {
 class Bvh {
  public:
   Bvh() = default;
-  /// @cost binned surface-area splits (perimeter in the plane), leaves of up to four boxes;
-  /// measured 34 ms for 1e5
   /// @throws InputError for more than 2^31 - 1 boxes
+  /// @cost   binned surface-area splits (of the perimeter, in the plane), leaves of up to four
+  /// boxes;
+  ///         measured 35 ms for 1e5 boxes of a mesh, and 110 ns for a query that finds two
   /// @source [wald2007] for the binned splits
   explicit Bvh(std::span<const Box2> boxes);
 
@@ -28,9 +29,8 @@ class Bvh {
   void query(const Box2& box, std::vector<std::int32_t>& out) const;
   /// The box nearest to p by exact distance.
   ///
-  /// @param exact_distance  called with a box number i, returns a distance (not squared) that is at
-  /// least the
-  ///                        distance from p to box i; NaN counts as infinitely far
+  /// @param exact_distance  called with a box number i; returns a distance (not squared) that is at
+  ///         least the one from p to box i; NaN counts as infinitely far
   /// @return the i with the smallest exact distance (ties: smallest i); -1 when there is no box
   template <class ExactDistance>
   std::int32_t nearest(const Vec2& p, ExactDistance&& exact_distance) const;

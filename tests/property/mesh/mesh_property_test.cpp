@@ -119,7 +119,7 @@ TEST(MeshProperty, ChildrenMapLikeTheirParent) {
   const std::array<std::array<Lambda, 3>, 4> corners{
       {{c0, m0, m2}, {m0, c1, m1}, {m2, m1, c2}, {m1, m2, m0}}};
   for (int round = 0; round < 30; ++round) {
-    const auto [mesh, unused_euler, unused_area] = random_shape(random);
+    const TriangleMesh mesh = random_shape(random).mesh;
     const auto fine = refine_uniform(mesh);
     for (int probe = 0; probe < 50; ++probe) {
       const auto e = random.below(mesh.element_count()), c = random.below(4);
@@ -139,7 +139,7 @@ TEST(MeshProperty, ChildrenMapLikeTheirParent) {
 TEST(MeshProperty, TreeOverElementBoxesAgreesWithBruteForce) {
   RandomStream random("TreeOverElementBoxesAgreesWithBruteForce", 1);
   for (int round = 0; round < 20; ++round) {
-    const auto [mesh, unused_euler, unused_area] = random_shape(random);
+    const TriangleMesh mesh = random_shape(random).mesh;
     std::vector<Box2> boxes;
     for (std::size_t e = 0; e < mesh.element_count(); ++e) boxes.push_back(mesh.box(ElementId(e)));
     const Bvh tree(boxes);
