@@ -214,7 +214,10 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
                                         [](const Contact& c, double value) { return c.r < value; });
     if (first == contacts.end() || first->r != r) return {false, exterior};
     if (first + 1 != contacts.end() && (first + 1)->r == r) return {false, exterior};
-    if (first->sign == 0 || !(first->s > 0.0 && first->s < 1.0)) return {false, exterior};
+    // Contacts at end points hold within the coincidence distance only: they cut, but tell no side.
+    if (first->sign == 0 || !(first->s > 0.0 && first->s < 1.0) || !(r > 0.0 && r < 1.0)) {
+      return {false, exterior};
+    }
     // sign +1: the target edge comes from the donor edge's left side.
     const bool left = (first->sign > 0) == before;
     return {true, donor_.edge_sides[static_cast<std::size_t>(first->donor_edge)][left ? 0 : 1]};
@@ -258,7 +261,8 @@ void ElementOverlay::donor_edges_inside(std::int32_t t) {
     const Record& record = records_[side.edge.index()];
     for (std::uint32_t i = record.contact_begin; i < record.contact_end; ++i) {
       const Contact& c = contacts_[i];
-      std::int8_t direction = c.r > 0.0 && c.r < 1.0 ? c.sign : std::int8_t{0};
+      const bool inner = c.r > 0.0 && c.r < 1.0 && c.s > 0.0 && c.s < 1.0;
+      std::int8_t direction = inner ? c.sign : std::int8_t{0};
       if (side.reversed) direction = static_cast<std::int8_t>(-direction);
       marks_.push_back({c.donor_edge, c.s, direction});
     }

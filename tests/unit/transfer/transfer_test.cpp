@@ -298,7 +298,9 @@ TEST_F(Discs, ZeroMakesNothing) {
   TransferOptions options;
   options.uncovered = Uncovered::zero;
   const TransferResult result = transfer(std::span(&f, 1), target, options);
-  EXPECT_EQ(result.report.fields[0].mass_made, 0.0);
+  // Gaps below 1e-10 of a triangle are rounding and are extended whatever the policy.
+  EXPECT_LE(std::abs(result.report.fields[0].mass_made), 1e-10);
+  EXPECT_GT(result.report.uncovered_area, 1e-6);
   EXPECT_LE(result.report.fields[0].relative_mass_defect, 1e-14);
   EXPECT_FALSE(result.report.uncovered_elements.empty());
 }

@@ -1,0 +1,81 @@
+// Cost of conservative transfer: element pairs per second by mesh size, geometric degree, field
+// degree and basis. Error and conservation are reported beside the time.
+
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "bezel/mesh/generate.hpp"
+#include "bezel/transfer/transfer.hpp"
+
+namespace {
+
+using namespace bezel;
+
+struct Meshes {
+  std::shared_ptr<const TriangleMesh> donor, target;
+};
+
+/// A square and a disc inside it with about `elements` triangles each.
+const Meshes& meshes(int g, int elements) {
+  static std::map<std::array<int, 2>, Meshes> made;
+  Meshes& m = made[{g, elements}];
+  if (!m.donor) {
+    GenerateOptions options;
+    options.degree = g;
+    options.curve_jitter = g > 1 ? 0.05 : 0.0;
+    options.seed = 1;
+    options.size = std::sqrt(2.125 * 2.125 / (0.433 * elements));
+    m.donor = std::make_shared<const TriangleMesh>(generate_rectangle(2.125, 2.125, options));
+    options.seed = 2;
+    options.size = std::sqrt(3.14159 / (0.433 * elements));
+    m.target = std::make_shared<const TriangleMesh>(generate_disc(1.0, options));
+  }
+  return m;
+}
+
+void transfer_pairs(benchmark::State& state) {
+  const int g = static_cast<int>(state.range(0));
+  const int p = static_cast<int>(state.range(1));
+  const Basis basis = state.range(2) == 0 ? Basis::physical : Basis::reference;
+  const Meshes& m = meshes(g, static_cast<int>(state.range(3)));
+  const Formula wave("exp(x^2) + 2*y");
+  const Field field = project("wave", Space::discontinuous(m.donor, p, basis), {&wave, 1});
+  TransferOptions options;
+  options.threads = 1;
+  TransferResult result;
+  double kernel = 0.0;
+  for (auto _ : state) {
+    result = transfer({&field, 1}, m.target, options);
+    kernel += result.report.seconds.overlay + result.report.seconds.integrate +
+              result.report.seconds.solve;
+  }
+  const auto n = static_cast<double>(state.iterations());
+  const auto pairs = static_cast<double>(result.report.pairs);
+  state.counters["pairs"] = pairs;
+  state.counters["Mpairs_per_s"] = 1e-6 * pairs * n / kernel;
+  state.counters["overlay_ns_per_pair"] = 1e9 * result.report.seconds.overlay / pairs;
+  state.counters["integrate_ns_per_pair"] = 1e9 * result.report.seconds.integrate / pairs;
+  state.counters["solve_ns_per_pair"] = 1e9 * result.report.seconds.solve / pairs;
+  state.counters["mass_defect"] = result.report.fields[0].relative_mass_defect;
+  state.counters["partition"] = result.report.max_partition_residual;
+  state.counters["l2_error"] = error_norms(result.fields[0], {&wave, 1}).l2_relative;
+}
+
+}  // namespace
+
+BENCHMARK(transfer_pairs)
+    ->ArgNames({"g", "p", "reference", "elements"})
+    ->ArgsProduct({{1}, {1, 2, 3}, {0}, {1000, 10000}})
+    ->Args({2, 2, 0, 1000})
+    ->Args({2, 2, 0, 10000})
+    ->Args({3, 3, 0, 1000})
+    ->Args({3, 3, 0, 10000})
+    ->Args({2, 2, 1, 1000})
+    ->Args({3, 3, 1, 1000})
+    ->Args({1, 1, 0, 100000})
+    ->Args({2, 2, 0, 100000})
+    ->Unit(benchmark::kMillisecond);
