@@ -163,7 +163,7 @@ struct NearestSearch {
       polish(s0, s1);
       if (depth >= 8) return;
     }
-    std::array<Vec2, max_curve_points> left, right;
+    geometry_kernel::PointBuffer<max_curve_points> left, right;
     geometry_kernel::halve(degree, c, left.data(), right.data());
     const double s = 0.5 * (s0 + s1);
     if (dot(c[0], c[0]) <= dot(c[degree], c[degree])) {

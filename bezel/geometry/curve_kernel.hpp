@@ -2,7 +2,8 @@
 // Raw kernels on a plane curve's control points: unchecked, on the stack, for the inner loops of
 // geometry.
 
-#include <array>
+#include <cstddef>
+#include <new>
 
 #include "bezel/bernstein/index.hpp"
 #include "bezel/numeric/vec.hpp"
@@ -11,13 +12,23 @@ namespace bezel::geometry_kernel {
 
 inline constexpr int max_curve_points = bernstein::max_interval_degree + 1;
 
+/// Room for N points on the stack, not set to zero (a Vec2 is an implicit-lifetime aggregate).
+template <int N>
+class PointBuffer {
+ public:
+  Vec2* data() { return std::launder(reinterpret_cast<Vec2*>(raw_)); }
+
+ private:
+  alignas(Vec2) std::byte raw_[static_cast<std::size_t>(N) * sizeof(Vec2)];
+};
+
 struct CurvePoint {
   Vec2 value, derivative;
 };
 
 template <int N>
 CurvePoint curve_point_fixed(int degree, const Vec2* b, double s, const Vec2& origin) {
-  std::array<Vec2, static_cast<std::size_t>(N)> storage;
+  PointBuffer<N> storage;
   Vec2* q = storage.data();
   for (int i = 0; i <= degree; ++i) q[i] = b[i] - origin;
   const double r = 1.0 - s;
@@ -53,7 +64,10 @@ inline CurvePoint curve_point(int degree, const Vec2* b, double s, const Vec2& o
 }
 
 /// Halves a curve: left and right get degree+1 points each; left[degree] == right[0].
-inline void halve(int degree, const Vec2* b, Vec2* left, Vec2* right) {
+/// D: the degree when known at compile time, else 0.
+template <int D = 0>
+inline void halve(int run_time_degree, const Vec2* b, Vec2* left, Vec2* right) {
+  const int degree = D > 0 ? D : run_time_degree;
   for (int i = 0; i <= degree; ++i) right[i] = b[i];
   left[0] = right[0];
   for (int r = 1; r <= degree; ++r) {

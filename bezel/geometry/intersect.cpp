@@ -61,25 +61,51 @@ double extent(const Box2& box) {
   return std::max(box.hi.x() - box.lo.x(), box.hi.y() - box.lo.y());
 }
 
-/// As outside_fat_line, for pieces.
-bool fat_line_misses(const Vec2* p, int m, const Vec2* q, int n, double margin) {
-  const Vec2 chord = p[m] - p[0];
-  double lo = 0, hi = 0;
-  for (int i = 1; i < m; ++i) {
-    const double c = cross(chord, p[i] - p[0]);
+/// M: the degree, or 0 when it is only known at run time.
+template <int M>
+CurvePiece make_piece(int degree, const Vec2* p, double lo, double hi, int depth) {
+  const int m = M > 0 ? M : degree;
+  CurvePiece piece;
+  piece.p = p;
+  piece.lo = lo;
+  piece.hi = hi;
+  piece.depth = depth;
+  piece.box_lo_x = piece.box_hi_x = p[0].x();
+  piece.box_lo_y = piece.box_hi_y = p[0].y();
+  piece.chord = p[m] - p[0];
+  piece.band_lo = piece.band_hi = 0;
+  for (int i = 1; i <= m; ++i) {
+    const double x = p[i].x(), y = p[i].y();
+    piece.box_lo_x = x < piece.box_lo_x ? x : piece.box_lo_x;
+    piece.box_hi_x = x > piece.box_hi_x ? x : piece.box_hi_x;
+    piece.box_lo_y = y < piece.box_lo_y ? y : piece.box_lo_y;
+    piece.box_hi_y = y > piece.box_hi_y ? y : piece.box_hi_y;
+    if (i == m) break;
+    const double c = cross(piece.chord, p[i] - p[0]);
+    piece.band_lo = c < piece.band_lo ? c : piece.band_lo;
+    piece.band_hi = c > piece.band_hi ? c : piece.band_hi;
+  }
+  return piece;
+}
+
+bool boxes_apart(const CurvePiece& a, const CurvePiece& b, double margin) {
+  return a.box_lo_x > b.box_hi_x + margin || b.box_lo_x > a.box_hi_x + margin ||
+         a.box_lo_y > b.box_hi_y + margin || b.box_lo_y > a.box_hi_y + margin;
+}
+
+/// As outside_fat_line, for pieces; N is q's degree.
+template <int N>
+bool fat_line_misses(const CurvePiece& a, const CurvePiece& b, int degree, double margin) {
+  const int n = N > 0 ? N : degree;
+  const double slack = margin * (std::fabs(a.chord.x()) + std::fabs(a.chord.y()));
+  const double first = cross(a.chord, b.p[0] - a.p[0]);
+  double lo = first, hi = first;
+  for (int j = 1; j <= n; ++j) {
+    const double c = cross(a.chord, b.p[j] - a.p[0]);
     lo = c < lo ? c : lo;
     hi = c > hi ? c : hi;
   }
-  const double slack = margin * (std::fabs(chord.x()) + std::fabs(chord.y()));
-  lo -= slack;
-  hi += slack;
-  double other_lo = std::numeric_limits<double>::infinity(), other_hi = -other_lo;
-  for (int j = 0; j <= n; ++j) {
-    const double c = cross(chord, q[j] - p[0]);
-    other_lo = c < other_lo ? c : other_lo;
-    other_hi = c > other_hi ? c : other_hi;
-  }
-  return other_hi < lo || other_lo > hi;
+  return hi < a.band_lo - slack || lo > a.band_hi + slack;
 }
 
 }  // namespace
@@ -100,15 +126,6 @@ IntersectSearch::IntersectSearch(const CurveCache& a, const CurveCache& b,
       margin_(std::max(tol_, 0x1p-53 * magnitude_)),
       size_(std::min(extent(a.box), extent(b.box))),
       parallel_depth_(tol_ > 0 ? 4 : 6) {}
-
-void IntersectSearch::run() {
-  find_contacts();
-  if (!find_overlaps()) {
-    descend(a_, 0.0, 1.0, 0, b_, 0.0, 1.0, 0);
-    if (!parallel_.empty()) resolve_parallel();
-  }
-  finish();
-}
 
 bool IntersectSearch::newton(double& s, double& t, double s0, double s1, double t0,
                              double t1) const {
@@ -134,9 +151,10 @@ bool IntersectSearch::newton(double& s, double& t, double s0, double s1, double 
 /// C = [chord_a, -chord_b]^-1; with F = a(s) - b(t) in the pieces' own parameters, ||I - C F'|| < 1
 /// over the whole box (from the hodographs' control points) makes F one to one there, so it holds
 /// at most one root, and every root is within that norm of C (b_0 - a_0).
-IntersectSearch::Outcome IntersectSearch::transversal(const Vec2* pa, double s0, double s1,
-                                                      const Vec2* pb, double t0, double t1) {
-  const Vec2 chord_a = pa[m_] - pa[0], chord_b = pb[n_] - pb[0];
+template <int M, int N>
+IntersectSearch::Outcome IntersectSearch::transversal(const CurvePiece& a, const CurvePiece& b) {
+  const int m = M > 0 ? M : m_, n = N > 0 ? N : n_;
+  const Vec2 *pa = a.p, *pb = b.p, chord_a = a.chord, chord_b = b.chord;
   const double det = cross(chord_a, chord_b);
   const double length_a = std::fabs(chord_a.x()) + std::fabs(chord_a.y());
   const double length_b = std::fabs(chord_b.x()) + std::fabs(chord_b.y());
@@ -144,15 +162,15 @@ IntersectSearch::Outcome IntersectSearch::transversal(const Vec2* pa, double s0,
   if (length_a < 256 * rounding_ || length_b < 256 * rounding_) return Outcome::open;
   const double inverse = 1.0 / det;
   double row1_a = 0, row2_a = 0, row1_b = 0, row2_b = 0;
-  for (int i = 0; i < m_; ++i) {
+  for (int i = 0; i < m; ++i) {
     const Vec2 e = pa[i + 1] - pa[i];
-    const double x = m_ * cross(e, chord_b) * inverse, y = m_ * cross(e, chord_a) * inverse;
+    const double x = m * cross(e, chord_b) * inverse, y = m * cross(e, chord_a) * inverse;
     row1_a = std::max(row1_a, std::fabs(1.0 - x));
     row2_a = std::max(row2_a, std::fabs(y));
   }
-  for (int j = 0; j < n_; ++j) {
+  for (int j = 0; j < n; ++j) {
     const Vec2 e = pb[j + 1] - pb[j];
-    const double x = n_ * cross(e, chord_b) * inverse, y = n_ * cross(chord_a, e) * inverse;
+    const double x = n * cross(e, chord_b) * inverse, y = n * cross(chord_a, e) * inverse;
     row1_b = std::max(row1_b, std::fabs(x));
     row2_b = std::max(row2_b, std::fabs(1.0 - y));
   }
@@ -161,67 +179,80 @@ IntersectSearch::Outcome IntersectSearch::transversal(const Vec2* pa, double s0,
   const Vec2 d = pb[0] - pa[0];
   const double x = cross(d, chord_b) * inverse, y = cross(d, chord_a) * inverse;
   if (x < -q - 1e-9 || x > 1 + q + 1e-9 || y < -q - 1e-9 || y > 1 + q + 1e-9) return Outcome::none;
+  const double s0 = a.lo, s1 = a.hi, t0 = b.lo, t1 = b.hi;
   double s = s0 + (s1 - s0) * std::clamp(x, 0.0, 1.0), t = t0 + (t1 - t0) * std::clamp(y, 0.0, 1.0);
   if (!newton(s, t, s0, s1, t0, t1)) return Outcome::open;
   add_crossing(s, t, s0, s1, t0, t1, det > 0 ? 1 : -1, true);
   return Outcome::one;
 }
 
-void IntersectSearch::descend(const Vec2* pa, double s0, double s1, int depth_a, const Vec2* pb,
-                              double t0, double t1, int depth_b) {
+template <int M, int N>
+void IntersectSearch::descend(const CurvePiece& a, const CurvePiece& b) {
+  const int m = M > 0 ? M : m_, n = N > 0 ? N : n_;
   if (++work_ > max_work) {
-    unresolved(s0, s1, t0, t1, "too many boxes");
+    unresolved(a.lo, a.hi, b.lo, b.hi, "too many boxes");
     return;
   }
-  const Box2 box_a = control_box(m_, pa), box_b = control_box(n_, pb);
-  if (box_a.lo.x() > box_b.hi.x() + margin_ || box_b.lo.x() > box_a.hi.x() + margin_ ||
-      box_a.lo.y() > box_b.hi.y() + margin_ || box_b.lo.y() > box_a.hi.y() + margin_)
-    return;
-  if (depth_a + depth_b > 0 &&
-      (fat_line_misses(pa, m_, pb, n_, margin_) || fat_line_misses(pb, n_, pa, m_, margin_)))
-    return;
-  if (transversal(pa, s0, s1, pb, t0, t1) != Outcome::open) return;
-  const double extent_a = extent(box_a), extent_b = extent(box_b);
-  if (depth_a >= parallel_depth_ && depth_b >= parallel_depth_ && graph_like(pa, pb)) {
-    parallel_.push_back({s0, s1, t0, t1});
+  if (transversal<M, N>(a, b) != Outcome::open) return;
+  if (a.depth >= parallel_depth_ && b.depth >= parallel_depth_ && graph_like(a.p, b.p)) {
+    parallel_.push_back({a.lo, a.hi, b.lo, b.hi});
     return;
   }
-  const double smallest = 4 * tau_;
-  if ((extent_a <= smallest || depth_a >= max_depth) &&
-      (extent_b <= smallest || depth_b >= max_depth)) {
-    unresolved(s0, s1, t0, t1, "the curves meet where one of them is singular");
+  const double extent_a = a.extent(), extent_b = b.extent(), smallest = 4 * tau_;
+  if ((extent_a <= smallest || a.depth >= max_depth) &&
+      (extent_b <= smallest || b.depth >= max_depth)) {
+    unresolved(a.lo, a.hi, b.lo, b.hi, "the curves meet where one of them is singular");
     return;
   }
-  const bool split_a = (extent_a >= 0.5 * extent_b && depth_a < max_depth) || depth_b >= max_depth;
-  const bool split_b = (extent_b >= 0.5 * extent_a && depth_b < max_depth) || depth_a >= max_depth;
-  const auto children = [&](auto& halves_a, auto& halves_b) {
-    const double s = 0.5 * (s0 + s1), t = 0.5 * (t0 + t1);
-    Vec2 *a0 = halves_a.data(), *a1 = a0 + m_ + 1, *b0 = halves_b.data(), *b1 = b0 + n_ + 1;
-    if (split_a) halve(m_, pa, a0, a1);
-    if (split_b) halve(n_, pb, b0, b1);
-    if (split_a && split_b) {
-      descend(a0, s0, s, depth_a + 1, b0, t0, t, depth_b + 1);
-      descend(a0, s0, s, depth_a + 1, b1, t, t1, depth_b + 1);
-      descend(a1, s, s1, depth_a + 1, b0, t0, t, depth_b + 1);
-      descend(a1, s, s1, depth_a + 1, b1, t, t1, depth_b + 1);
-    } else if (split_a) {
-      descend(a0, s0, s, depth_a + 1, pb, t0, t1, depth_b);
-      descend(a1, s, s1, depth_a + 1, pb, t0, t1, depth_b);
-    } else {
-      descend(pa, s0, s1, depth_a, b0, t0, t, depth_b + 1);
-      descend(pa, s0, s1, depth_a, b1, t, t1, depth_b + 1);
+  const bool split_a = (extent_a >= 0.5 * extent_b && a.depth < max_depth) || b.depth >= max_depth;
+  const bool split_b = (extent_b >= 0.5 * extent_a && b.depth < max_depth) || a.depth >= max_depth;
+  constexpr int room_a = M > 0 ? M + 1 : max_curve_points,
+                room_b = N > 0 ? N + 1 : max_curve_points;
+  PointBuffer<2 * room_a> halves_a;
+  PointBuffer<2 * room_b> halves_b;
+  CurvePiece pieces_a[2] = {a, a}, pieces_b[2] = {b, b};
+  if (split_a) {
+    Vec2 *left = halves_a.data(), *right = left + m + 1;
+    halve<M>(m, a.p, left, right);
+    const double s = 0.5 * (a.lo + a.hi);
+    pieces_a[0] = make_piece<M>(m, left, a.lo, s, a.depth + 1);
+    pieces_a[1] = make_piece<M>(m, right, s, a.hi, a.depth + 1);
+  }
+  if (split_b) {
+    Vec2 *left = halves_b.data(), *right = left + n + 1;
+    halve<N>(n, b.p, left, right);
+    const double t = 0.5 * (b.lo + b.hi);
+    pieces_b[0] = make_piece<N>(n, left, b.lo, t, b.depth + 1);
+    pieces_b[1] = make_piece<N>(n, right, t, b.hi, b.depth + 1);
+  }
+  for (int i = 0; i < (split_a ? 2 : 1); ++i)
+    for (int j = 0; j < (split_b ? 2 : 1); ++j) {
+      const CurvePiece &p = pieces_a[i], &q = pieces_b[j];
+      if (!boxes_apart(p, q, margin_) && !fat_line_misses<N>(p, q, n, margin_) &&
+          !fat_line_misses<M>(q, p, m, margin_))
+        descend<M, N>(p, q);
     }
-  };
-  if (m_ <= 3 && n_ <= 3) {
-    std::array<Vec2, 8> halves_a, halves_b;
-    children(halves_a, halves_b);
-  } else if (m_ <= 11 && n_ <= 11) {
-    std::array<Vec2, 24> halves_a, halves_b;
-    children(halves_a, halves_b);
-  } else {
-    std::array<Vec2, 2 * max_curve_points> halves_a, halves_b;
-    children(halves_a, halves_b);
+}
+
+template <int M, int N>
+void IntersectSearch::descend_all() {
+  descend<M, N>(make_piece<M>(m_, a_, 0.0, 1.0, 0), make_piece<N>(n_, b_, 0.0, 1.0, 0));
+}
+
+void IntersectSearch::run() {
+  find_contacts();
+  if (!find_overlaps()) {
+    if (m_ == 1 && n_ == 1)
+      descend_all<1, 1>();
+    else if (m_ == 2 && n_ == 2)
+      descend_all<2, 2>();
+    else if (m_ == 3 && n_ == 3)
+      descend_all<3, 3>();
+    else
+      descend_all<0, 0>();
+    if (!parallel_.empty()) resolve_parallel();
   }
+  finish();
 }
 
 void IntersectSearch::add_crossing(double s, double t, double s0, double s1, double t0, double t1,

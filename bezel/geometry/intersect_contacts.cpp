@@ -40,7 +40,7 @@ class FootSearch {
       offer(0.5 * (s0 + s1));
       return;
     }
-    std::array<Vec2, max_curve_points> left, right;
+    PointBuffer<max_curve_points> left, right;
     halve(degree_, c, left.data(), right.data());
     const double s = 0.5 * (s0 + s1);
     descend(left.data(), s0, s, depth + 1);
@@ -142,19 +142,18 @@ void IntersectSearch::find_contact(const Vec2& p, const CurveCache& curve, bool 
   if (at_last) add(1.0, true);
   // A straight curve that has p at an end has it nowhere else.
   if (degree == 1 && (at_first || at_last)) return;
-  std::array<Vec2, max_curve_points> shifted;
-  for (int i = 0; i <= degree; ++i)
-    shifted[static_cast<std::size_t>(i)] = curve.control[static_cast<std::size_t>(i)] - p;
+  PointBuffer<max_curve_points> buffer;
+  Vec2* shifted = buffer.data();
+  for (int i = 0; i <= degree; ++i) shifted[i] = curve.control[static_cast<std::size_t>(i)] - p;
   if (at_first || at_last) {
     // Only a curve that turns back can meet p again.
     bool turns = at_first && at_last;
     for (int i = 0; i < degree && !turns; ++i)
-      turns = dot(curve.chord, shifted[static_cast<std::size_t>(i) + 1] -
-                                   shifted[static_cast<std::size_t>(i)]) <= 0;
+      turns = dot(curve.chord, shifted[i + 1] - shifted[i]) <= 0;
     if (!turns) return;
   }
   FootSearch search(degree, curve.control.data(), p, tau);
-  search.descend(shifted.data(), 0.0, 1.0, 0);
+  search.descend(shifted, 0.0, 1.0, 0);
   for (int i = 0; i < search.count(); ++i) {
     const double s = search[i];
     const Vec2 q = curve_point(degree, curve.control.data(), s).value;
@@ -192,14 +191,14 @@ bool IntersectSearch::coincide(const Contact& p, const Contact& q, double& gap) 
   // Two polynomial curves that coincide, both traced once, differ by an affine change of parameter:
   // compare the control points on the two intervals.
   if (m_ == n_) {
-    std::array<Vec2, max_curve_points> on_a, on_b;
+    PointBuffer<max_curve_points> buffer_a, buffer_b;
+    Vec2 *on_a = buffer_a.data(), *on_b = buffer_b.data();
     const bool reversed = p.t > q.t;
-    restrict_curve(m_, a_, p.s, q.s, on_a.data());
-    restrict_curve(n_, b_, std::min(p.t, q.t), std::max(p.t, q.t), on_b.data());
+    restrict_curve(m_, a_, p.s, q.s, on_a);
+    restrict_curve(n_, b_, std::min(p.t, q.t), std::max(p.t, q.t), on_b);
     double worst = 0;
     for (int i = 0; i <= m_; ++i) {
-      const Vec2 d =
-          on_a[static_cast<std::size_t>(i)] - on_b[static_cast<std::size_t>(reversed ? n_ - i : i)];
+      const Vec2 d = on_a[i] - on_b[reversed ? n_ - i : i];
       worst = std::max(worst, norm(d));
     }
     if (worst <= tau_) {

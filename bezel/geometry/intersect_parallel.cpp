@@ -272,7 +272,7 @@ class ParallelPair {
     // The nodes themselves are rounded: that moves delta by u times its slope.
     const double node_noise = 0x1p-50 * largest / h;
     const double allowed = exact_ ? 1e-12 * largest + 1e-28 * f_.magnitude_ + node_noise
-                                  : std::max(f_.tau_ / 32, f_.rounding_);
+                                  : std::max(f_.tau_ / 128, f_.rounding_);
     // Where delta stays far from zero its exact shape does not matter.
     const auto [least, most] = std::minmax_element(piece.c.begin(), piece.c.end());
     const double away = std::max(*least, -*most);
@@ -591,7 +591,7 @@ void IntersectSearch::resolve_cluster(std::span<const ParallelBox> boxes) {
     hull.t1 = std::max(hull.t1, box.t1);
   }
   if (boxes.size() > 1) {
-    std::array<Vec2, max_curve_points> pa, pb;
+    PointBuffer<max_curve_points> pa, pb;
     restrict_curve(m_, a_, hull.s0, hull.s1, pa.data());
     restrict_curve(n_, b_, hull.t0, hull.t1, pb.data());
     if (!graph_like(pa.data(), pb.data())) {

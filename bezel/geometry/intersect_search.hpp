@@ -3,6 +3,7 @@
 // test for at most one transversal root (intersect.cpp), and the signed distance of nearly parallel
 // pieces (intersect_parallel.cpp).
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -33,6 +34,18 @@ struct HalfEvent {
   bool reversed;
 };
 
+/// A part of a curve, with what the rejection tests need.
+struct CurvePiece {
+  const Vec2* p;
+  double lo, hi;  // the curve's parameters
+  int depth;      // halvings
+  double box_lo_x, box_hi_x, box_lo_y, box_hi_y;
+  Vec2 chord;
+  double band_lo, band_hi;  // range of cross(chord, p_i - p_0)
+
+  double extent() const { return std::max(box_hi_x - box_lo_x, box_hi_y - box_lo_y); }
+};
+
 class IntersectSearch {
  public:
   IntersectSearch(const CurveCache& a, const CurveCache& b, const IntersectOptions& options,
@@ -50,10 +63,13 @@ class IntersectSearch {
 
   // Subdivision (intersect.cpp).
   enum class Outcome { none, one, open };
-  Outcome transversal(const Vec2* pa, double s0, double s1, const Vec2* pb, double t0, double t1);
+  template <int M, int N>
+  Outcome transversal(const CurvePiece& a, const CurvePiece& b);
   bool newton(double& s, double& t, double s0, double s1, double t0, double t1) const;
-  void descend(const Vec2* pa, double s0, double s1, int depth_a, const Vec2* pb, double t0,
-               double t1, int depth_b);
+  template <int M, int N>
+  void descend(const CurvePiece& a, const CurvePiece& b);
+  template <int M, int N>
+  void descend_all();
   void add_crossing(double s, double t, double s0, double s1, double t0, double t1, int sign,
                     bool certified);
   void unresolved(double s0, double s1, double t0, double t1, const char* reason);
