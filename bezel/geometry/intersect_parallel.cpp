@@ -17,38 +17,37 @@ constexpr int degree = 8;  // of the interpolants
 constexpr std::size_t nodes = degree + 1;
 using Values = std::array<double, nodes>;
 
-/// Chebyshev points of the second kind on [0, 1].
-Values chebyshev_points() {
-  Values x{};
-  for (std::size_t i = 0; i < nodes; ++i)
-    x[i] = 0.5 - 0.5 * std::cos(M_PI * static_cast<double>(i) / degree);
-  return x;
-}
+/// Chebyshev points of the second kind on [0, 1]: (1 - cos(i pi / 8)) / 2.
+constexpr Values points{
+    0.0, 0.038060233744356621936, 0.14644660940672623780, 0.30865828381745511414,
+    0.5, 0.69134171618254488586,  0.85355339059327376220, 0.96193976625564337806,
+    1.0};
 
-struct Matrix {
-  std::array<std::array<double, nodes>, nodes> m;
-};
+using Matrix = std::array<std::array<double, nodes>, nodes>;
 
 /// From values at the points to Bernstein coefficients: inverse of the Bernstein-Vandermonde
 /// matrix.
-Matrix interpolation_matrix(const Values& x) {
+constexpr Matrix interpolation_matrix() {
   std::array<std::array<double, 2 * nodes>, nodes> w{};
   for (std::size_t i = 0; i < nodes; ++i) {
     double binomial = 1;
     for (std::size_t j = 0; j < nodes; ++j) {
       double value = binomial;
-      for (std::size_t k = 0; k < j; ++k) value *= x[i];
-      for (std::size_t k = j; k < degree; ++k) value *= 1.0 - x[i];
+      for (std::size_t k = 0; k < j; ++k) value *= points[i];
+      for (std::size_t k = j; k < degree; ++k) value *= 1.0 - points[i];
       w[i][j] = value;
       binomial = binomial * static_cast<double>(degree - j) / static_cast<double>(j + 1);
     }
     w[i][nodes + i] = 1.0;
   }
+  const auto size = [](double v) { return v < 0 ? -v : v; };
   for (std::size_t c = 0; c < nodes; ++c) {
     std::size_t pivot = c;
     for (std::size_t i = c + 1; i < nodes; ++i)
-      if (std::fabs(w[i][c]) > std::fabs(w[pivot][c])) pivot = i;
-    std::swap(w[c], w[pivot]);
+      if (size(w[i][c]) > size(w[pivot][c])) pivot = i;
+    const auto row = w[c];
+    w[c] = w[pivot];
+    w[pivot] = row;
     const double scale = 1.0 / w[c][c];
     for (double& v : w[c]) v *= scale;
     for (std::size_t i = 0; i < nodes; ++i) {
@@ -57,11 +56,12 @@ Matrix interpolation_matrix(const Values& x) {
       for (std::size_t j = 0; j < 2 * nodes; ++j) w[i][j] -= f * w[c][j];
     }
   }
-  Matrix result;
+  Matrix result{};
   for (std::size_t i = 0; i < nodes; ++i)
-    for (std::size_t j = 0; j < nodes; ++j) result.m[i][j] = w[i][nodes + j];
+    for (std::size_t j = 0; j < nodes; ++j) result[i][j] = w[i][nodes + j];
   return result;
 }
+constexpr Matrix to_bernstein = interpolation_matrix();
 
 double evaluate(const Values& c, double x) {
   Values q = c;
@@ -89,15 +89,57 @@ void append(std::vector<Segment>& list, double s0, double s1, int state) {
     list.push_back({s0, s1, state});
 }
 
+/// Where a monotone polynomial with p(0) and p(1) on different sides of target passes it.
+double passing(const Values& c, double target) {
+  const bool rising = c[degree] > c[0];
+  double lo = 0, hi = 1, x = (target - c[0]) / (c[degree] - c[0]);
+  for (int i = 0; i < 60; ++i) {
+    Values q = c;
+    for (std::size_t d = degree; d > 1; --d)
+      for (std::size_t k = 0; k < d; ++k) q[k] = (1.0 - x) * q[k] + x * q[k + 1];
+    const double slope = degree * (q[1] - q[0]), value = (1.0 - x) * q[0] + x * q[1] - target;
+    ((value > 0) == rising ? hi : lo) = x;
+    double next = slope != 0 ? x - value / slope : lo;
+    if (!(next > lo && next < hi)) next = 0.5 * (lo + hi);
+    const double step = std::fabs(next - x);
+    x = next;
+    if (step <= 4e-16 || (i > 5 && step <= 1e-14)) break;
+  }
+  return x;
+}
+
+bool monotone(const Values& c) {
+  bool up = true, down = true;
+  for (std::size_t i = 0; i < degree; ++i) {
+    up = up && c[i + 1] > c[i];
+    down = down && c[i + 1] < c[i];
+  }
+  return up || down;
+}
+
 void classify(const Values& c, double threshold, double s0, double s1, int depth,
               std::vector<Segment>& list) {
   const auto [least, most] = std::minmax_element(c.begin(), c.end());
   int state = 0;
-  if (*least > threshold)
+  if (*least > threshold) {
     state = 1;
-  else if (*most < -threshold)
+  } else if (*most < -threshold) {
     state = -1;
-  else if (depth > 0 && !(*most <= threshold && *least >= -threshold)) {
+  } else if (depth > 0 && !(*most <= threshold && *least >= -threshold)) {
+    const auto side = [&](double v) { return v > threshold ? 1 : v < -threshold ? -1 : 0; };
+    if (monotone(c)) {
+      const int first = side(c[0]), last = side(c[degree]);
+      double at = s0;
+      const auto until = [&](double target, int now) {
+        const double s = std::clamp(s0 + (s1 - s0) * passing(c, target), at, s1);
+        append(list, at, s, now);
+        at = s;
+      };
+      if (first != 0 && last != first) until(first * threshold, first);
+      if (last != 0 && last != first) until(last * threshold, 0);
+      append(list, at, s1, last);
+      return;
+    }
     Values left, right = c;
     left[0] = right[0];
     for (std::size_t r = 1; r < nodes; ++r) {
@@ -145,8 +187,6 @@ class ParallelPair {
 
   void run() {
     if (!clip()) return;
-    points_ = chebyshev_points();
-    matrix_ = interpolation_matrix(points_);
     interpolate(s0_, s1_, 10);
     if (exact_)
       read_exact();
@@ -255,13 +295,13 @@ class ParallelPair {
     const double h = s1 - s0;
     double largest = 0;
     for (std::size_t i = 0; i < nodes; ++i) {
-      v[i] = sample(s0 + h * points_[i]).delta;
+      v[i] = sample(s0 + h * points[i]).delta;
       largest = std::max(largest, std::fabs(v[i]));
     }
     Piece piece{s0, s1, {}, 0};
     for (std::size_t i = 0; i < nodes; ++i) {
       double sum = 0;
-      for (std::size_t j = 0; j < nodes; ++j) sum += matrix_.m[i][j] * v[j];
+      for (std::size_t j = 0; j < nodes; ++j) sum += to_bernstein[i][j] * v[j];
       piece.c[i] = sum;
     }
     piece.c[0] = v[0];
@@ -299,13 +339,28 @@ class ParallelPair {
 
   /// A zero of the interpolant between s0 and s1, where it has different signs.
   double zero(double s0, double s1) const {
-    const bool rising = delta_at(s1) > 0;
-    for (int i = 0; i < 60; ++i) {
-      const double s = 0.5 * (s0 + s1);
+    // Illinois: false position, halving the value at an end that stays.
+    double v0 = delta_at(s0), v1 = delta_at(s1);
+    for (int i = 0; i < 100 && v0 * v1 < 0; ++i) {
+      double s = s0 - v0 * (s1 - s0) / (v1 - v0);
+      if (!(s > s0 && s < s1)) s = 0.5 * (s0 + s1);
       if (!(s > s0 && s < s1)) break;
-      ((delta_at(s) > 0) == rising ? s1 : s0) = s;
+      const double v = delta_at(s);
+      if (v == 0) return s;
+      if (v * v1 < 0) {
+        s0 = s1;
+        v0 = v1;
+      } else {
+        v0 *= 0.5;
+      }
+      s1 = s;
+      v1 = v;
+      if (s0 > s1) {
+        std::swap(s0, s1);
+        std::swap(v0, v1);
+      }
     }
-    return 0.5 * (s0 + s1);
+    return std::fabs(v0) < std::fabs(v1) ? s0 : s1;
   }
 
   /// The same from the distance itself, when the interpolant's noise leaves a wide interval
@@ -511,8 +566,6 @@ class ParallelPair {
   bool reversed_ = false, lo_is_b_ = false, hi_is_b_ = false;
   Vec2 d_;
   mutable double last_t_ = -1;
-  Values points_{};
-  Matrix matrix_{};
   std::vector<Piece> pieces_;
 };
 
