@@ -27,12 +27,13 @@ std::string text(double x) {
 }
 
 void check_length(const char* what, double x) {
-  if (!(x > 0) || !std::isfinite(x))
+  if (!(x >= 1e-100 && x <= 1e100))  // squares stay far from over- and underflow
     throw InputError("found " + std::string(what) + " " + text(x) +
-                     ", expected a positive finite length");
+                     ", expected a length from 1e-100 to 1e100");
 }
 
-void check(const GenerateOptions& o, double area, double perimeter) {
+/// @param shortest  the shape's smallest length
+void check(const GenerateOptions& o, double area, double perimeter, double shortest) {
   if (o.degree < 1 || o.degree > TriangleMesh::max_degree)
     throw InputError("found geometric degree " + std::to_string(o.degree) + ", expected 1 to " +
                      std::to_string(TriangleMesh::max_degree));
@@ -42,6 +43,11 @@ void check(const GenerateOptions& o, double area, double perimeter) {
   if (!(o.curve_jitter >= 0 && o.curve_jitter <= 0.5))
     throw InputError("found curve jitter " + text(o.curve_jitter) + ", expected 0 to 0.5");
   check_length("size", o.size);
+  const double far = std::max(std::abs(o.centre[0]), std::abs(o.centre[1]));
+  if (!(std::min(shortest, o.size) >= 1e-12 * far))
+    throw InputError("found a length of " + text(std::min(shortest, o.size)) +
+                     " at a distance of " + text(far) +
+                     " from the origin, expected at least 1e-12 of the distance");
   const double elements = area / o.size / o.size * (4 / std::sqrt(3.0)) + perimeter / o.size;
   if (!(elements <= 5e7))
     throw InputError("size " + text(o.size) + " would give about " + text(elements) +
@@ -115,7 +121,7 @@ void add_polygon(Triangulation& t, const std::vector<Vec2>& corners, const std::
 TriangleMesh generate_rectangle(double width, double height, const GenerateOptions& options) {
   check_length("width", width);
   check_length("height", height);
-  check(options, width * height, 2 * (width + height));
+  check(options, width * height, 2 * (width + height), std::min(width, height));
   const Vec2 half{{width / 2, height / 2}}, lo = options.centre - half, hi = options.centre + half;
   return build_valid(
       "rectangle", options, [&](Triangulation& t, double shrink, RandomStream& random) {
@@ -152,7 +158,7 @@ TriangleMesh generate_rectangle(double width, double height, const GenerateOptio
 
 TriangleMesh generate_disc(double radius, const GenerateOptions& options) {
   check_length("radius", radius);
-  check(options, pi * radius * radius, 2 * pi * radius);
+  check(options, pi * radius * radius, 2 * pi * radius, radius);
   const Vec2& centre = options.centre;
   return build_valid("disc", options, [&](Triangulation& t, double shrink, RandomStream& random) {
     const double size = shrink * options.size;
@@ -206,14 +212,18 @@ TriangleMesh generate_annulus(double inner_radius, double outer_radius,
     throw InputError("found inner radius " + text(inner_radius) + " and outer radius " +
                      text(outer_radius) + ", expected inner < outer");
   const double gap = outer_radius - inner_radius, area = pi * gap * (inner_radius + outer_radius);
+  if (!(gap >= 1e-9 * outer_radius))
+    throw InputError("found a gap of " + text(gap) +
+                     " between the circles, expected at least 1e-9 of "
+                     "the outer radius");
   // A chord from one circle to the next must not dip below the inner one: its angle is less than
   // acos(inner / next); half of that leaves room for the arcs.
   const auto least = [&](double next) {
     const double angle = 2 * std::asin(std::sqrt(0.5 * (next - inner_radius) / next));
     return std::max(8.0, std::ceil(2 * pi / (0.5 * angle)));
   };
-  check(options, area, 2 * pi * (inner_radius + outer_radius));
-  check(options, 0, least(outer_radius) * options.size);
+  check(options, area, 2 * pi * (inner_radius + outer_radius), std::min(inner_radius, gap));
+  check(options, 0, least(outer_radius) * options.size, gap);
   const Vec2& centre = options.centre;
   return build_valid(
       "annulus", options, [&](Triangulation& t, double shrink, RandomStream& random) {
@@ -269,7 +279,7 @@ TriangleMesh generate_annulus(double inner_radius, double outer_radius,
 
 TriangleMesh generate_lshape(double width, const GenerateOptions& options) {
   check_length("width", width);
-  check(options, 0.75 * width * width, 4 * width);
+  check(options, 0.75 * width * width, 4 * width, width);
   const Vec2& mid = options.centre;
   const Vec2 half{{width / 2, width / 2}}, lo = mid - half, hi = mid + half;
   return build_valid("lshape", options, [&](Triangulation& t, double shrink, RandomStream& random) {

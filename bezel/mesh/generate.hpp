@@ -33,8 +33,9 @@ struct GenerateOptions {
 /// alone. Edges are about `size` long, shorter where a shape needs it (a disc has 6 boundary edges
 /// at least, a circle of an annulus 8, more where the annulus is thin).
 ///
-/// @throws   InputError for a length that is not positive and finite, a degree outside 1..10, a
-///           jitter outside 0..0.5, or a size that would give more than 5e7 elements or 2e9 nodes
+/// @throws   InputError for a length outside 1e-100..1e100 or below 1e-12 of the centre's
+///           coordinates, a degree outside 1..10, a jitter outside 0..0.5, or a size that would
+///           give more than 5e7 elements or 2e9 nodes
 /// @accuracy the boundary interpolates arcs at Gauss-Lobatto points equally distributed in angle:
 ///           degree g is off by O(size^(g+1)), the area by O(size^(2g)); straight boundaries are
 ///           exact
@@ -43,7 +44,7 @@ struct GenerateOptions {
 /// @source   [lenoir1986] for what inner control points must satisfy; [feder1980] for the sampling
 TriangleMesh generate_rectangle(double width, double height, const GenerateOptions& options);
 TriangleMesh generate_disc(double radius, const GenerateOptions& options);
-/// @throws InputError also unless inner_radius < outer_radius
+/// @throws InputError also unless inner_radius < outer_radius, by at least 1e-9 of outer_radius
 TriangleMesh generate_annulus(double inner_radius, double outer_radius,
                               const GenerateOptions& options);
 /// The square of the given width without its lower right quarter.

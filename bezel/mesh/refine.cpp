@@ -75,9 +75,9 @@ void halve(std::vector<Vec2> b, std::vector<Vec2>& out) {
   }
 }
 
-class Refinement {
+class UniformRefinement {
  public:
-  explicit Refinement(const TriangleMesh& mesh) : mesh_(mesh), g_(mesh.degree()) {
+  explicit UniformRefinement(const TriangleMesh& mesh) : mesh_(mesh), g_(mesh.degree()) {
     const std::size_t per_edge = at(2 * g_ - 1),
                       per_element = at(3 * (g_ - 1) + 2 * (g_ - 1) * (g_ - 2));
     const std::size_t nodes = mesh.node_count() +
@@ -224,7 +224,7 @@ class Refinement {
 }  // namespace
 
 TriangleMesh refine_uniform(const TriangleMesh& mesh) {
-  return Refinement(mesh).run();
+  return UniformRefinement(mesh).run();
 }
 
 }  // namespace bezel

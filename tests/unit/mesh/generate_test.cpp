@@ -258,19 +258,19 @@ TEST(GenerateBadInput, Messages) {
     return message_of([&] { generate_rectangle(1, 1, options); });
   };
   EXPECT_EQ(message_of([&] { generate_rectangle(-1, 1, good); }),
-            "found width -1, expected a positive finite length");
+            "found width -1, expected a length from 1e-100 to 1e100");
   EXPECT_EQ(message_of([&] { generate_rectangle(1, 0, good); }),
-            "found height 0, expected a positive finite length");
+            "found height 0, expected a length from 1e-100 to 1e100");
   EXPECT_EQ(message_of([&] { generate_disc(std::nan(""), good); }),
-            "found radius nan, expected a positive finite length");
+            "found radius nan, expected a length from 1e-100 to 1e100");
   EXPECT_EQ(message_of([&] { generate_lshape(std::numeric_limits<double>::infinity(), good); }),
-            "found width inf, expected a positive finite length");
+            "found width inf, expected a length from 1e-100 to 1e100");
   EXPECT_EQ(message_of([&] { generate_annulus(0, 1, good); }),
-            "found inner radius 0, expected a positive finite length");
+            "found inner radius 0, expected a length from 1e-100 to 1e100");
   EXPECT_EQ(message_of([&] { generate_annulus(1, 1, good); }),
             "found inner radius 1 and outer radius 1, expected inner < outer");
   EXPECT_EQ(changed([](auto& o) { o.size = 0; }),
-            "found size 0, expected a positive finite length");
+            "found size 0, expected a length from 1e-100 to 1e100");
   EXPECT_EQ(changed([](auto& o) { o.degree = 0; }), "found geometric degree 0, expected 1 to 10");
   EXPECT_EQ(changed([](auto& o) { o.degree = 11; }), "found geometric degree 11, expected 1 to 10");
   EXPECT_EQ(changed([](auto& o) { o.curve_jitter = 0.6; }),
@@ -279,6 +279,13 @@ TEST(GenerateBadInput, Messages) {
             "found curve jitter nan, expected 0 to 0.5");
   EXPECT_EQ(changed([](auto& o) { o.centre[1] = std::nan(""); }),
             "found centre (0.3, nan), expected finite coordinates");
+  EXPECT_EQ(
+      changed([](auto& o) { o.centre[0] = -1e13; }),
+      "found a length of 0.3 at a distance of 1e+13 from the origin, expected at least 1e-12 of "
+      "the distance");
+  EXPECT_EQ(
+      message_of([&] { generate_annulus(0.5, 0.5 + 0x1p-40, good); }),
+      "found a gap of 9.09495e-13 between the circles, expected at least 1e-9 of the outer radius");
   EXPECT_EQ(changed([](auto& o) { o.size = 1e-5; }),
             "size 1e-05 would give about 2.30944e+10 elements, expected at most 5e7");
   EXPECT_EQ(changed([](auto& o) { o.size = 2.2e-4, o.degree = 10; }).substr(0, 46),
