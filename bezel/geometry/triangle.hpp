@@ -15,6 +15,12 @@ using bernstein::Lambda;
 
 /// Determinant of the Jacobian d(x,y)/d(u,v) as a Bernstein polynomial of degree 2(g-1) on the
 /// reference triangle.
+///
+/// @param g        degree of the map, 1..40
+/// @param control  triangle_size(g) control points, order bernstein/index.hpp, finite
+/// @return   triangle_size(2(g-1)) coefficients
+/// @throws   InputError for a bad degree, size or value (as all functions here but `invert`)
+/// @cost     triangle_size(g-1)^2 cross products
 std::vector<double> jacobian_determinant(int g, std::span<const Vec2> control);
 
 enum class Validity {
@@ -27,6 +33,16 @@ struct ValidityResult {
   Lambda where;  ///< a place where the determinant is smallest seen
   double det;    ///< its value there
 };
+/// Whether the map's Jacobian determinant is positive everywhere, by halving its Bernstein
+/// polynomial with a bound on the rounding.
+///
+/// `valid`: all coefficients of all pieces are positive beyond rounding; `inverted`: a value is
+/// negative beyond rounding (g = 1: the determinant is not positive); `undecided`: it touches zero
+/// to rounding, or 40 halvings or 20000 pieces did not decide. A positive determinant makes the
+/// map locally one to one, not yet globally.
+///
+/// @cost     0.15 us at g = 2, 0.3 us at g = 3 for triangles far from degenerate
+/// @source   [hermes2018, sec. 2.2] for the notion
 [[nodiscard]] ValidityResult check_validity(int g, std::span<const Vec2> control);
 
 enum class Location {
@@ -39,22 +55,42 @@ struct LocateResult {
   Lambda lambda;    ///< best answer so far; may be slightly negative within tolerance
   double residual;  ///< |b(lambda) - p|
 };
-/// Finds lambda with b(lambda) = p. tolerance: how far below 0 a barycentric may be
-/// (dimensionless).
+/// Finds lambda with b(lambda) = p.
+///
+/// Newton from the corner triangle's barycentrics; when that leaves the triangle, halving with
+/// convex-hull tests (box and three directions) and Newton from the pieces. `outside` is proven by
+/// the hulls of all pieces; `not_converged`: 90 halvings or 4000 pieces did not decide. For maps
+/// that are not one to one any preimage may be found.
+///
+/// @param p          finite
+/// @param tolerance  how far below 0 a barycentric may be, dimensionless, in [0, 1)
+/// @accuracy residual within a few u of the control points' distance to p
+/// @cost     inside: 0.12 us at g = 2; outside but in the hull: microseconds
 [[nodiscard]] LocateResult locate(int g, std::span<const Vec2> control, const Vec2& p,
                                   double tolerance = 1e-12);
 
-/// Newton from a start; also converges to points somewhat outside the triangle (lambda not
-/// clamped).
+/// What `invert` found.
 struct InverseResult {
-  Lambda lambda;
-  bool converged;
+  Lambda lambda;   ///< sums to 1, not clamped
+  bool converged;  ///< the last step was below 4e-9 (the error is its square), or the residual is
+                   ///< at rounding
 };
+/// Newton from a start, damped when the residual grows; also converges to points somewhat outside
+/// the triangle. An inner loop of transfer: arguments are NOT checked.
+///
+/// @param g, control  1 <= g <= 40, triangle_size(g) finite points
+/// @cost     60 ns at g = 2, 70 ns at g = 3; at most 60 evaluations; no allocation
 [[nodiscard]] InverseResult invert(int g, std::span<const Vec2> control, const Vec2& p,
                                    const Lambda& start);
 
+/// Signed area (positive for counter-clockwise sides), exact up to rounding, by Green's theorem
+/// along the sides; relative to corner 0, so a triangle far from the origin loses nothing.
 double area(int g, std::span<const Vec2> control);
-/// Integral of x^a y^b over the triangle, a + b <= 20, exact up to rounding.
+/// Integral of x^a y^b over the triangle, exact up to rounding, by Green's theorem with a Gauss
+/// rule per side.
+///
+/// @param g 1..18
+/// @param a, b >= 0, a + b <= 20
 double moment(int g, std::span<const Vec2> control, int a, int b);
 
 }  // namespace bezel
