@@ -74,11 +74,11 @@ int run_study_transfer(const std::string& out_dir, bool quick, bool json) {
   for (int g = 1; g <= 3; ++g) {
     GenerateOptions square;
     square.degree = g;
-    square.size = 0.42;
-    square.seed = 2018;
+    square.size = 0.36;
+    square.seed = 1;
     GenerateOptions disc = square;
-    disc.size = 0.62;
-    disc.seed = 72;
+    disc.size = 0.54;
+    disc.seed = 4;
     auto donor = std::make_shared<const TriangleMesh>(generate_rectangle(2.125, 2.125, square));
     auto target = std::make_shared<const TriangleMesh>(generate_disc(1.0, disc));
     const auto k = static_cast<std::size_t>(g - 1);
