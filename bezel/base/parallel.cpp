@@ -1,6 +1,7 @@
 #include "bezel/base/parallel.hpp"
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -9,6 +10,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <optional>
 
 namespace bezel {
 namespace {
@@ -57,6 +59,12 @@ void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body, i
       }
     }
   };
+  // More threads than the machine offers must be allowed for (else oneTBB complains on the standard
+  // error).
+  std::optional<tbb::global_control> allow;
+  if (count > thread_count()) {
+    allow.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count));
+  }
   tbb::task_arena arena(count);
   arena.execute([&] { tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n), run); });
   failure.rethrow();
