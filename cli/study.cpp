@@ -1,0 +1,38 @@
+// bezel study: repeats published experiments.
+
+#include "cli/study.hpp"
+
+#include "cli/command.hpp"
+
+namespace bezel::cli {
+namespace {
+
+struct StudyOptions {
+  std::string name, out;
+  bool quick = false;
+};
+
+int run(const StudyOptions& options, const Context& context) {
+  return run_study_transfer(options.out, options.quick, context.json);
+}
+
+}  // namespace
+
+void add_study(CLI::App& app, Context& context) {
+  auto options = std::make_shared<StudyOptions>();
+  CLI::App* command =
+      add_command(app, context, "study", "Repeat a published experiment and compare",
+                  "bezel study transfer --quick -o study", options, run);
+  command
+      ->add_option("NAME", options->name,
+                   "transfer: errors and orders of transfers from a square to a disc")
+      ->required()
+      ->check(CLI::IsMember({"transfer"}))
+      ->type_name("");
+  command->add_option("-o,--output", options->out, "Folder for tables and plots")
+      ->required()
+      ->type_name("DIR");
+  command->add_flag("--quick", options->quick, "Fewer levels, within a minute");
+}
+
+}  // namespace bezel::cli
