@@ -7,6 +7,7 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/numeric/double_double.hpp"
+#include "bezel/numeric/triangle_rule_table.hpp"
 
 namespace bezel {
 namespace {
@@ -94,6 +95,23 @@ void add_orbit(TriangleRule& rule, double a, double weight) {
   rule.weight.insert(rule.weight.end(), 3, weight);
 }
 
+TriangleRule expand(const SymmetricRule& table) {
+  TriangleRule rule;
+  const double* x = table.number.data();
+  if (table.ones > 0) {
+    rule.lambda.push_back({1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0});
+    rule.weight.push_back(*x++);
+  }
+  for (int i = 0; i < table.threes; ++i, x += 2) add_orbit(rule, x[1], x[0]);
+  for (int i = 0; i < table.sixes; ++i, x += 3) {
+    const double a = x[1], b = x[2], c = 1.0 - a - b;
+    rule.lambda.insert(rule.lambda.end(),
+                       {{a, b, c}, {b, c, a}, {c, a, b}, {a, c, b}, {c, b, a}, {b, a, c}});
+    rule.weight.insert(rule.weight.end(), 6, x[0]);
+  }
+  return rule;
+}
+
 }  // namespace
 
 IntervalRule gauss_legendre(int n) {
@@ -156,6 +174,8 @@ TriangleRule triangle_rule(int degree) {
   if (degree < 0 || degree > max_triangle_rule_degree)
     throw InputError("triangle rule of degree " + std::to_string(degree) + ", expected 0 to " +
                      std::to_string(max_triangle_rule_degree));
+  for (const SymmetricRule& table : symmetric_rules)
+    if (degree > 5 && table.degree >= degree) return expand(table);
   TriangleRule rule;
   if (degree <= 1) {
     rule.lambda.push_back({1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0});

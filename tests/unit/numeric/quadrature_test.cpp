@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -145,9 +147,26 @@ TEST(Quadrature, TriangleRulesAreExactPositiveAndInside) {
 }
 
 TEST(Quadrature, LowDegreesUseFewPoints) {
-  const std::vector<int> expected{1, 1, 3, 6, 6, 7};
-  for (int degree = 0; degree < 6; ++degree)
+  const std::vector<int> expected{1, 1, 3, 6, 6, 7, 12, 15, 16, 19, 25};
+  for (int degree = 0; degree <= 10; ++degree)
     EXPECT_EQ(triangle_rule(degree).size(), expected[static_cast<std::size_t>(degree)]);
+}
+
+// A rule that is symmetric has, with every node, its permutations.
+TEST(Quadrature, LowDegreesAreSymmetric) {
+  for (int degree = 0; degree <= 10; ++degree) {
+    const TriangleRule rule = triangle_rule(degree);
+    for (std::size_t q = 0; q < rule.weight.size(); ++q) {
+      const std::array<double, 3> turned{rule.lambda[q][1], rule.lambda[q][2], rule.lambda[q][0]};
+      const std::array<double, 3> mirrored{rule.lambda[q][1], rule.lambda[q][0], rule.lambda[q][2]};
+      for (const auto& image : {turned, mirrored}) {
+        const auto found = std::find(rule.lambda.begin(), rule.lambda.end(), image);
+        ASSERT_NE(found, rule.lambda.end()) << degree;
+        EXPECT_EQ(rule.weight[static_cast<std::size_t>(found - rule.lambda.begin())],
+                  rule.weight[q]);
+      }
+    }
+  }
 }
 
 TEST(Quadrature, SizesAreChecked) {
