@@ -49,7 +49,7 @@ int main(int argc, char **argv) {
                                    {15, 1, 4, 6}, {16, 1, 6, 6}, {17, 0, 8, 6},
                                    {18, 1, 6, 9}, {19, 1, 8, 8}, {20, 1, 8, 9}};
   const int from = argc > 1 ? std::atoi(argv[1]) : 6,
-            to = argc > 2 ? std::atoi(argv[2]) : 14;
+            to = argc > 2 ? std::atoi(argv[2]) : 10;
   const int limit = argc > 3 ? std::atoi(argv[3]) : 20000;
   for (const Orbits &o : wanted) {
     if (o.degree < from || o.degree > to)
