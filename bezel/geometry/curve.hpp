@@ -99,8 +99,8 @@ struct IntersectOptions {
 /// @cost     quadratic mesh edges 0.05 us when apart, 0.2 us when crossing or identical; random
 ///           cubics 1 us; nearly coincident curves 7 us (one core at 3 GHz); no allocation unless
 ///           pieces are nearly parallel
-/// @limits   Crossings between nearly parallel pieces are found from an interpolated distance and
-///           not `certified`
+/// @limits   extents between 2^-480 and 2^480 (products must not overflow or vanish). Crossings
+///           between nearly parallel pieces come from an interpolated distance, not `certified`
 /// @source   docs/methods/geometry.md; the test for at most one root: [hermes2018] posed the
 ///           problem, the bound is Krawczyk's with the hodographs' control points
 CurveIntersections intersect(std::span<const Vec2> a, std::span<const Vec2> b,

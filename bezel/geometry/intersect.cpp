@@ -194,7 +194,10 @@ void IntersectSearch::descend(const CurvePiece& a, const CurvePiece& b) {
     return;
   }
   if (transversal<M, N>(a, b) != Outcome::open) return;
-  if (a.depth >= parallel_depth_ && b.depth >= parallel_depth_ && graph_like(a.p, b.p)) {
+  // A few more halvings often part curves that merely pass at a small angle; many open boxes mean
+  // that they run along each other, and then the second stage is the shorter way.
+  const int ready = work_ < 60 ? 7 : parallel_depth_;
+  if (a.depth >= ready && b.depth >= ready && graph_like(a.p, b.p)) {
     parallel_.push_back({a.lo, a.hi, b.lo, b.hi});
     return;
   }
