@@ -97,7 +97,7 @@ struct IntersectOptions {
 ///           where the distance passes tol, known to tol / 128 from a measured (not proven)
 ///           interpolation error
 /// @cost     quadratic mesh edges 0.05 us when apart, 0.2 us when crossing or identical; random
-///           cubics 1 us; nearly coincident curves 7 us (one core at 3 GHz); no allocation unless
+///           cubics 1 us; nearly coincident curves 5 to 40 us (one core); no allocation unless
 ///           pieces are nearly parallel
 /// @limits   extents between 2^-480 and 2^480 (products must not overflow or vanish). Crossings
 ///           between nearly parallel pieces come from an interpolated distance, not `certified`

@@ -125,6 +125,7 @@ IntersectSearch::IntersectSearch(const CurveCache& a, const CurveCache& b,
       tau_(std::max(tol_, rounding_)),
       margin_(std::max(tol_, 0x1p-53 * magnitude_)),
       size_(std::min(extent(a.box), extent(b.box))),
+      shallow_(tol_ > 0 ? std::max(1e-13, std::sqrt(tau_ / size_) / 32) : 1e-13),
       parallel_depth_(tol_ > 0 ? 4 : 6) {}
 
 bool IntersectSearch::newton(double& s, double& t, double s0, double s1, double t0,
@@ -158,7 +159,7 @@ IntersectSearch::Outcome IntersectSearch::transversal(const CurvePiece& a, const
   const double det = cross(chord_a, chord_b);
   const double length_a = std::fabs(chord_a.x()) + std::fabs(chord_a.y());
   const double length_b = std::fabs(chord_b.x()) + std::fabs(chord_b.y());
-  if (!(std::fabs(det) > 1e-13 * length_a * length_b)) return Outcome::open;
+  if (!(std::fabs(det) > shallow_ * length_a * length_b)) return Outcome::open;
   if (length_a < 256 * rounding_ || length_b < 256 * rounding_) return Outcome::open;
   const double inverse = 1.0 / det;
   double row1_a = 0, row2_a = 0, row1_b = 0, row2_b = 0;

@@ -93,6 +93,7 @@ class IntersectSearch {
   double tau_;        // distance that counts as touching: max(tol, rounding)
   double margin_;     // boxes further apart than this hold nothing
   double size_;       // extent of the smaller curve
+  double shallow_;  // sine below which a crossing may count as an overlap: left to the second stage
   int parallel_depth_;
   int work_ = 0;
   std::array<Contact, 16> contacts_;

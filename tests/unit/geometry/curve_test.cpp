@@ -105,6 +105,76 @@ TEST(IntersectTest, ReusedStorageIsClearedFirst) {
   EXPECT_TRUE(out.crossings.empty());
 }
 
+TEST(IntersectTest, CachedCurvesGiveTheSameAnswer) {
+  const Points a{{{0, 0}}, {{1, 2}}, {{2, -1}}, {{3, 1}}}, b{{{0, 1}}, {{2, -1}}, {{3, 0.5}}};
+  const auto plain = intersect(a, b);
+  bezel::CurveIntersections cached;
+  intersect(bezel::cache_curve(a), bezel::cache_curve(b), {}, cached);
+  ASSERT_FALSE(plain.crossings.empty());
+  ASSERT_EQ(plain.crossings.size(), cached.crossings.size());
+  for (std::size_t i = 0; i < plain.crossings.size(); ++i) {
+    EXPECT_EQ(plain.crossings[i].s, cached.crossings[i].s);
+    EXPECT_EQ(plain.crossings[i].t, cached.crossings[i].t);
+  }
+}
+
+TEST(IntersectTest, AnEndPointWithinTheDistanceIsOnTheOtherCurve) {
+  bezel::IntersectOptions options;
+  options.coincidence_distance = 1e-3;
+  const Points line{{{0, 0}}, {{4, 0}}};
+  // Ends just short of the line, just past it, and near its end point.
+  for (const double y : {5e-4, -5e-4}) {
+    const Points up{{{1, y}}, {{1, 1}}};
+    const auto found = intersect(line, up, options);
+    ASSERT_EQ(found.crossings.size(), 1u);
+    EXPECT_EQ(found.crossings[0].s, 0.25);
+    EXPECT_EQ(found.crossings[0].t, 0.0);
+    EXPECT_EQ(found.crossings[0].sign, 1);
+  }
+  const Points corner{{{4.0005, 5e-4}}, {{5, 1}}};
+  const auto found = intersect(line, corner, options);
+  ASSERT_EQ(found.crossings.size(), 1u);
+  EXPECT_EQ(found.crossings[0].s, 1.0);
+  EXPECT_EQ(found.crossings[0].t, 0.0);
+  const Points beyond{{{1, 2e-3}}, {{1, 1}}};
+  EXPECT_TRUE(intersect(line, beyond, options).crossings.empty());
+}
+
+TEST(IntersectTest, AShallowCrossingIsAnOverlapOnlyWithinTheBand) {
+  // Within 1e-12 of each other for 0.4 < s < 0.6; straight and bent.
+  for (const double bend : {0.0, 0.1}) {
+    const Points a{{{0, 0}}, {{0.5, bend}}, {{1, 0}}};
+    const Points b{{{0, -5e-12}}, {{0.5, bend}}, {{1, 5e-12}}};
+    bezel::IntersectOptions options;
+    const auto sharp = intersect(a, b, options);
+    ASSERT_EQ(sharp.crossings.size(), 1u);
+    EXPECT_EQ(sharp.crossings[0].sign, 1);
+    EXPECT_NEAR(sharp.crossings[0].s, 0.5, 1e-4);  // condition 1e11
+    options.coincidence_distance = 1e-12;
+    const auto found = intersect(a, b, options);
+    ASSERT_EQ(found.overlaps.size(), 1u) << bend;
+    EXPECT_TRUE(found.crossings.empty());
+    EXPECT_NEAR(found.overlaps[0].s0, 0.4, 2e-3);
+    EXPECT_NEAR(found.overlaps[0].s1, 0.6, 2e-3);
+    EXPECT_LE(found.overlaps[0].gap, 1.01e-12);
+  }
+  // Straight lines of degree 1 alike.
+  const Points p{{{0, 0}}, {{1, 0}}}, q{{{0, -5e-12}}, {{1, 5e-12}}};
+  bezel::IntersectOptions band;
+  band.coincidence_distance = 1e-12;
+  EXPECT_EQ(intersect(p, q).crossings.size(), 1u);
+  EXPECT_EQ(intersect(p, q, band).overlaps.size(), 1u);
+}
+
+TEST(IntersectTest, ACuspOnTheOtherCurveIsUnresolvedNotMissed) {
+  const Points cusp{{{0, 0}}, {{1, 1}}, {{0, 1}}, {{1, 0}}}, line{{{-1, 0.75}}, {{2, 0.75}}};
+  const auto found = intersect(cusp, line);
+  ASSERT_EQ(found.unresolved.size(), 1u);
+  EXPECT_EQ(found.unresolved[0].reason, "the curves meet where one of them is singular");
+  EXPECT_LE(found.unresolved[0].s_lo, 0.5);
+  EXPECT_GE(found.unresolved[0].s_hi, 0.5);
+}
+
 TEST(FootPointTest, NearestOfSeveral) {
   const Points parabola{{{-1, 1}}, {{0, -1}}, {{1, 1}}};  // y = x^2
   const auto foot = bezel::foot_point(parabola, Vec2{{0, -1}});
