@@ -624,7 +624,7 @@ void ElementTransfer::finish(Group& g, std::int32_t t, Accumulators& sums,
     rhs.assign(n, 0.0);
     // Around the element's mean: what remains is small, so a constant comes back constant whatever
     // the rule.
-    const double mean = g.target_mapped && full ? mass[c] / area : 0.0;
+    const double mean = full ? mass[c] / area : 0.0;
     double sum = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
       rhs[i] = (sums.product[i * nc + c] - mean * sums.basis[i]) * factors[i];

@@ -73,7 +73,7 @@ void ElementOverlay::begin_chunk() {
   contacts_.clear();
   coincidences_.clear();
   pieces_.clear();
-  seed_ = exterior;
+  candidates_.clear();
 }
 
 void ElementOverlay::collect_candidate_edges() {
@@ -335,8 +335,8 @@ std::span<const Segment> ElementOverlay::segments(std::int32_t t, OverlayCounts&
   Box2 wide = box;
   wide.lo -= Vec2{{room, room}};
   wide.hi += Vec2{{room, room}};
-  search_.query(wide, seed_, search_memory_, candidates_);
-  if (!candidates_.empty()) seed_ = candidates_[candidates_.size() / 2];
+  near_.swap(candidates_);
+  search_.query(wide, near_, search_memory_, candidates_);
   collect_candidate_edges();
 
   segments_.clear();

@@ -95,12 +95,11 @@ class ElementOverlay {
   const FrontSearch& search_;
   FrontSearch::Memory search_memory_;
   std::uint32_t chunk_ = 0;
-  std::int32_t seed_ = exterior;
   std::vector<Record> records_;
   std::vector<Contact> contacts_;
   std::vector<Coincidence> coincidences_;
   std::vector<Piece> pieces_;
-  std::vector<std::int32_t> candidates_, candidate_edges_;
+  std::vector<std::int32_t> candidates_, near_, candidate_edges_;
   std::vector<std::uint32_t> edge_stamp_;
   std::uint32_t edge_now_ = 0;
   std::vector<Mark> marks_;

@@ -102,11 +102,24 @@ std::vector<std::int32_t> OverlayMesh::spatial_order() const {
 
 FrontSearch::FrontSearch(const OverlayMesh& mesh) : mesh_(mesh), tree_(mesh.element_box) {}
 
-void FrontSearch::query(const Box2& box, std::int32_t seed, Memory& memory,
+void FrontSearch::query(const Box2& box, std::span<const std::int32_t> near, Memory& memory,
                         std::vector<std::int32_t>& out) const {
-  out.clear();
   const auto& boxes = mesh_.element_box;
-  bool complete = seed != exterior && boxes[static_cast<std::size_t>(seed)].overlaps(box);
+  // The walk must start in an element that truly meets the box (a corner in it, or around its
+  // centre): from one whose bounding box only overlaps it, the elements in the box need not be
+  // reachable through elements near the box.
+  std::int32_t seed = exterior;
+  for (const std::int32_t e : near) {
+    if (!boxes[static_cast<std::size_t>(e)].overlaps(box)) continue;
+    const auto corners = mesh_.corners(e);
+    if (box.contains(corners[0]) || box.contains(corners[1]) || box.contains(corners[2]) ||
+        inside_margin(mesh_, e, box.centre()) >= 0.0) {
+      seed = e;
+      break;
+    }
+  }
+  out.clear();
+  bool complete = seed != exterior;
   if (complete) {
     if (memory.stamp.size() != boxes.size()) {
       memory.stamp.assign(boxes.size(), 0);

@@ -66,8 +66,9 @@ class FrontSearch {
     std::vector<std::uint32_t> stamp;
     std::uint32_t now = 0;
   };
-  /// Ascending element numbers; `seed` may be exterior. The answer does not depend on the seed.
-  void query(const Box2& box, std::int32_t seed, Memory& memory,
+  /// Ascending element numbers. `near`: elements that may lie in the box, tried as starts of the
+  /// walk. The answer does not depend on them.
+  void query(const Box2& box, std::span<const std::int32_t> near, Memory& memory,
              std::vector<std::int32_t>& out) const;
   /// The element nearest to p by the distance of its corners and centre; for extending fields.
   std::int32_t nearest(const Vec2& p) const;
