@@ -26,14 +26,15 @@ int run(const ConvertOptions& options, const Context& context) {
   const std::vector<std::string> lost = write(options.out, data, how);
   notes(context, options.out, lost);
   if (context.json) {
-    print_json(Json{{"schema", "bezel/convert/1"},
-                    {"input", options.in},
-                    {"output", options.out},
-                    {"format", bezel::to_string(*how.format)},
-                    {"elements", data.mesh->element_count()},
-                    {"fields", data.fields.size()},
-                    {"not_read", data.notes},
-                    {"lost", lost}});
+    print_or_remove(to_text(Json{{"schema", "bezel/convert/1"},
+                                 {"input", options.in},
+                                 {"output", options.out},
+                                 {"format", bezel::to_string(*how.format)},
+                                 {"elements", data.mesh->element_count()},
+                                 {"fields", data.fields.size()},
+                                 {"not_read", data.notes},
+                                 {"lost", lost}}),
+                    {options.out});
   }
   return ok;
 }

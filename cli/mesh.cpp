@@ -2,8 +2,11 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
+#include "bezel/base/error.hpp"
 #include "bezel/mesh/generate.hpp"
 #include "cli/arguments.hpp"
 #include "cli/output.hpp"
@@ -18,6 +21,9 @@ struct MeshOptions {
   int refine = 0;
   std::optional<Format> format;
 };
+
+// The same as the generators' limit.
+constexpr double most_elements = 5e7;
 
 // Each shape takes only the lengths that describe it.
 void refuse(const std::optional<double>& value, const char* option, const std::string& shape) {
@@ -56,20 +62,26 @@ int run(const MeshOptions& options, const Context& context) {
   require_writable(options.out);
 
   TriangleMesh mesh = generate(options, g);
+  const double refined = std::ldexp(static_cast<double>(mesh.element_count()), 2 * options.refine);
+  if (refined > most_elements) {
+    throw InputError(fmt::format("--refine {} would give {:.3g} triangles, expected at most {:.0e}",
+                                 options.refine, refined, most_elements));
+  }
   for (int level = 0; level < options.refine; ++level) mesh = refine_uniform(mesh);
   Dataset data;
   data.mesh = std::make_shared<const TriangleMesh>(std::move(mesh));
   const std::vector<std::string> lost = write(options.out, data, how);
   notes(context, options.out, lost);
   if (context.json) {
-    print_json(Json{{"schema", "bezel/mesh/1"},
-                    {"output", options.out},
-                    {"shape", options.shape},
-                    {"seed", context.seed},
-                    {"geometric_degree", data.mesh->degree()},
-                    {"vertices", data.mesh->vertex_count()},
-                    {"elements", data.mesh->element_count()},
-                    {"lost", lost}});
+    print_or_remove(to_text(Json{{"schema", "bezel/mesh/1"},
+                                 {"output", options.out},
+                                 {"shape", options.shape},
+                                 {"seed", context.seed},
+                                 {"geometric_degree", data.mesh->degree()},
+                                 {"vertices", data.mesh->vertex_count()},
+                                 {"elements", data.mesh->element_count()},
+                                 {"lost", lost}}),
+                    {options.out});
   }
   return ok;
 }

@@ -4,8 +4,10 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
@@ -17,8 +19,20 @@ void print(std::string_view text) {
   const bool written =
       std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
   if (!written) {
-    throw InputError(InputPlace{"standard output", 0, {}, -1},
-                     "cannot be written: " + std::generic_category().message(errno));
+    std::string reason = std::generic_category().message(errno);
+    if (!reason.empty())
+      reason[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(reason[0])));
+    throw InputError(InputPlace{"standard output", 0, {}, -1}, "cannot be written: " + reason);
+  }
+}
+
+void print_or_remove(std::string_view text, const std::vector<std::string>& files) {
+  try {
+    print(text);
+  } catch (...) {
+    std::error_code ignored;
+    for (const std::string& file : files) std::filesystem::remove(file, ignored);
+    throw;
   }
 }
 

@@ -16,6 +16,9 @@ using Json = nlohmann::ordered_json;
 
 /// Writes text to the standard output. @throws InputError when it cannot be written
 void print(std::string_view text);
+/// The same for a command that has written files: they are removed when the text cannot be written,
+/// since a command that fails leaves none.
+void print_or_remove(std::string_view text, const std::vector<std::string>& files);
 /// Prints one JSON object; numbers round-trip, NaN and infinity become null.
 void print_json(const Json& object);
 /// The text print_json(object) writes.

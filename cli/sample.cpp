@@ -71,15 +71,16 @@ int run(const SampleOptions& options, const Context& context) {
   const std::vector<std::string> lost = write(options.out, data, how);
   notes(context, options.out, lost);
   if (context.json) {
-    print_json(Json{{"schema", "bezel/sample/1"},
-                    {"output", options.out},
-                    {"elements", data.mesh->element_count()},
-                    {"degree", degree},
-                    {"basis", to_string(options.basis)},
-                    {"continuity", to_string(space->continuity())},
-                    {"dofs", space->dof_count()},
-                    {"fields", fields},
-                    {"lost", lost}});
+    print_or_remove(to_text(Json{{"schema", "bezel/sample/1"},
+                                 {"output", options.out},
+                                 {"elements", data.mesh->element_count()},
+                                 {"degree", degree},
+                                 {"basis", to_string(options.basis)},
+                                 {"continuity", to_string(space->continuity())},
+                                 {"dofs", space->dof_count()},
+                                 {"fields", fields},
+                                 {"lost", lost}}),
+                    {options.out});
   }
   return ok;
 }

@@ -173,15 +173,13 @@ int run(const TransferCommand& options, const Context& context) {
   moved.time = donor.time;
   const Json report = to_json(options, result.report);
   write_both(options, moved, how, report, context);
-  if (context.json) {
-    print_json(report);
-  } else {
-    print(to_table(result.report));
-    if (context.verbose > 0) {
-      note(context, fmt::format("{:.3g} s: overlay {:.3g}, integrate {:.3g}, solve {:.3g}",
-                                result.report.seconds.total, result.report.seconds.overlay,
-                                result.report.seconds.integrate, result.report.seconds.solve));
-    }
+  std::vector<std::string> files = {options.out};
+  if (!options.report.empty()) files.push_back(options.report);
+  print_or_remove(context.json ? to_text(report) : to_table(result.report), files);
+  if (!context.json && context.verbose > 0) {
+    const auto& s = result.report.seconds;
+    note(context, fmt::format("{:.3g} s: overlay {:.3g}, integrate {:.3g}, solve {:.3g}", s.total,
+                              s.overlay, s.integrate, s.solve));
   }
   return ok;
 }

@@ -93,7 +93,9 @@ int run(const ViewOptions& options, const Context& context) {
   if (how.columns == 0) how.columns = columns_for(panels);
   draw(options.out, panels, how);
   if (context.json)
-    print_json(Json{{"schema", "bezel/view/1"}, {"output", options.out}, {"panels", list}});
+    print_or_remove(
+        to_text(Json{{"schema", "bezel/view/1"}, {"output", options.out}, {"panels", list}}),
+        {options.out});
   return ok;
 }
 

@@ -7,6 +7,7 @@ A case is a transcript. It runs in an empty folder that holds a copy of tests/cl
 
     # a comment
     $ bezel info data/none.msh           a command (words as a shell splits them, no expansion)
+    $full bezel info data/square.msh     the same with a standard output that is full
     2> error: data/none.msh: ...         a line of its standard error
     > ...                                a line of its standard output
     exit 3                               its exit code; 0 when not given
@@ -70,8 +71,8 @@ def compare(found, operator, expected):
 class Command:
     """A command and what is said about it."""
 
-    def __init__(self, line, number):
-        self.line, self.number = line, number
+    def __init__(self, line, number, full):
+        self.line, self.number, self.full = line, number, full
         self.exit = 0
         self.out, self.err, self.checks = [], [], []
         self.loose_out = self.loose_err = False
@@ -86,8 +87,8 @@ def parse(path):
             kind, _, rest = line.partition(" ")
             if not line.strip() or kind == "#":
                 continue
-            if kind == "$":
-                steps.append(Command(rest, number))
+            if kind in ("$", "$full"):
+                steps.append(Command(rest, number, kind == "$full"))
                 continue
             if kind in ("write", "mkdir"):
                 steps.append((kind, rest))
@@ -149,8 +150,16 @@ def run(command, bezel, folder):
     if words[0] != "bezel":
         raise Failure("commands start with 'bezel'")
     before = snapshot(folder)
-    result = subprocess.run([bezel] + words[1:], cwd=folder, capture_output=True, timeout=300, check=False)
-    out, err = result.stdout.decode(), result.stderr.decode()
+    with open("/dev/full", "wb") as full:
+        result = subprocess.run(
+            [bezel] + words[1:],
+            cwd=folder,
+            stdout=full if command.full else subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            timeout=300,
+            check=False,
+        )
+    out, err = (result.stdout or b"").decode(), result.stderr.decode()
     shown = f"exit {result.returncode}\n--- stdout\n{out}--- stderr\n{err}---"
     try:
         if result.returncode != command.exit:
