@@ -38,6 +38,12 @@ Vec2 point_at(std::span<const Vec2> control, double t) {
 // Where a piece is looked at; the middle first, the others only when the middle is too close to an
 // edge.
 constexpr std::array<double, 5> looks = {0.5, 0.25, 0.75, 0.0625, 0.9375};
+/// A contact tells sides only when it is this far (in parameter) from edge ends and from other
+/// contacts.
+constexpr double isolation = 1e-9;
+bool is_inner(double r) {
+  return r > isolation && r < 1.0 - isolation;
+}
 /// A barycentric margin that decides at once.
 constexpr double clear_margin = 1e-7;
 
@@ -212,12 +218,12 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
   const auto side_of = [&](double r, bool before) -> std::pair<bool, std::int32_t> {
     const auto first = std::lower_bound(contacts.begin(), contacts.end(), r,
                                         [](const Contact& c, double value) { return c.r < value; });
-    if (first == contacts.end() || first->r != r) return {false, exterior};
-    if (first + 1 != contacts.end() && (first + 1)->r == r) return {false, exterior};
-    // Contacts at end points hold within the coincidence distance only: they cut, but tell no side.
-    if (first->sign == 0 || !(first->s > 0.0 && first->s < 1.0) || !(r > 0.0 && r < 1.0)) {
-      return {false, exterior};
-    }
+    if (first == contacts.end() || first->r != r || first->sign == 0) return {false, exterior};
+    // Contacts at ends, or near each other, hold within the coincidence distance only, so their
+    // order may be wrong: they cut, but tell no side.
+    if (!is_inner(r) || !is_inner(first->s)) return {false, exterior};
+    if (first != contacts.begin() && r - (first - 1)->r < isolation) return {false, exterior};
+    if (first + 1 != contacts.end() && (first + 1)->r - r < isolation) return {false, exterior};
     // sign +1: the target edge comes from the donor edge's left side.
     const bool left = (first->sign > 0) == before;
     return {true, donor_.edge_sides[static_cast<std::size_t>(first->donor_edge)][left ? 0 : 1]};
@@ -261,7 +267,7 @@ void ElementOverlay::donor_edges_inside(std::int32_t t) {
     const Record& record = records_[side.edge.index()];
     for (std::uint32_t i = record.contact_begin; i < record.contact_end; ++i) {
       const Contact& c = contacts_[i];
-      const bool inner = c.r > 0.0 && c.r < 1.0 && c.s > 0.0 && c.s < 1.0;
+      const bool inner = is_inner(c.r) && is_inner(c.s);
       std::int8_t direction = inner ? c.sign : std::int8_t{0};
       if (side.reversed) direction = static_cast<std::int8_t>(-direction);
       marks_.push_back({c.donor_edge, c.s, direction});
@@ -276,6 +282,12 @@ void ElementOverlay::donor_edges_inside(std::int32_t t) {
   std::sort(marks_.begin(), marks_.end(), [](const Mark& a, const Mark& b) {
     return std::tie(a.edge, a.s, a.direction) < std::tie(b.edge, b.s, b.direction);
   });
+
+  for (std::size_t i = 0; i + 1 < marks_.size(); ++i) {
+    if (marks_[i].edge == marks_[i + 1].edge && marks_[i + 1].s - marks_[i].s < isolation) {
+      marks_[i].direction = marks_[i + 1].direction = 0;
+    }
+  }
 
   std::size_t next = 0;
   for (const std::int32_t e : candidate_edges_) {
