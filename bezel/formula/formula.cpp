@@ -27,7 +27,7 @@ struct Formula::Program {
   template <class S>
   S run(const S* values) const {
     // Room for usual formulas without an allocation.
-    constexpr int small = 24;
+    constexpr int small = 12;
     if (code.stack_size <= small) {
       std::array<S, small> stack;
       return formula::run(code.instructions, values, stack.data());
@@ -128,16 +128,43 @@ void Formula::evaluate(std::span<const std::span<const double>> columns,
   }
 }
 
+namespace {
+
+// The point as dual numbers; a few variables need no allocation.
+template <class S>
+class DualPoint {
+ public:
+  explicit DualPoint(std::span<const double> values) {
+    if (values.size() > few_.size()) many_.resize(values.size());
+    data_ = many_.empty() ? few_.data() : many_.data();
+    std::copy(values.begin(), values.end(), data_);
+  }
+  DualPoint(const DualPoint&) = delete;
+  DualPoint& operator=(const DualPoint&) = delete;
+  S& operator[](std::size_t i) { return data_[i]; }
+  const S* data() const { return data_; }
+
+ private:
+  std::array<S, 4> few_{};
+  std::vector<S> many_;
+  S* data_;
+};
+
+}  // namespace
+
 double Formula::gradient(std::span<const double> values, std::span<double> first) const {
   program_->check(values.size(), "values");
   program_->check(first.size(), "first derivatives");
-  std::vector<Dual<double>> point(values.begin(), values.end());
-  for (std::size_t i = 0; i < point.size(); ++i) {
+  if (values.empty()) return (*this)(values);
+  DualPoint<Dual<double>> point(values);
+  Dual<double> f;
+  for (std::size_t i = 0; i < values.size(); ++i) {
     point[i].d = 1;
-    first[i] = program_->run(point.data()).d;
+    f = program_->run(point.data());
+    first[i] = f.d;
     point[i].d = 0;
   }
-  return (*this)(values);
+  return f.v;  // the same operations as without derivatives
 }
 
 double Formula::hessian(std::span<const double> values, std::span<double> first,
@@ -150,20 +177,22 @@ double Formula::hessian(std::span<const double> values, std::span<double> first,
                      std::to_string(second.size()) + " second derivatives instead of " +
                      std::to_string(n * n));
   }
+  if (n == 0) return (*this)(values);
   using Second = Dual<Dual<double>>;
-  std::vector<Second> point(values.begin(), values.end());
+  DualPoint<Second> point(values);
+  Second f;
   for (std::size_t i = 0; i < n; ++i) {
     point[i].d.v = 1;
     for (std::size_t j = i; j < n; ++j) {
       point[j].v.d = 1;
-      const Second f = program_->run(point.data());
+      f = program_->run(point.data());
       if (j == i) first[i] = f.d.v;
       second[i * n + j] = second[j * n + i] = f.d.d;
       point[j].v.d = 0;
     }
     point[i].d.v = 0;
   }
-  return (*this)(values);
+  return f.v.v;
 }
 
 }  // namespace bezel

@@ -419,6 +419,17 @@ TEST(FormulaDerivatives, ADirectionThatIsAbsentStaysZeroAtASingularity) {
   EXPECT_EQ(g[1], 0);
 }
 
+TEST(FormulaDerivatives, NoVariablesAndMany) {
+  EXPECT_EQ(Formula("2*3", {}).gradient({}, {}), 6);
+  EXPECT_EQ(Formula("2*3", {}).hessian({}, {}, {}), 6);
+  const Formula f("a*b*c*d*k", {"a", "b", "c", "d", "k"});
+  std::array<double, 5> g{};
+  std::array<double, 25> h{};
+  EXPECT_EQ(f.hessian(std::array{1.0, 2.0, 3.0, 4.0, 5.0}, g, h), 120);
+  EXPECT_EQ(g, (std::array{120.0, 60.0, 40.0, 30.0, 24.0}));
+  EXPECT_EQ(h[1 * 5 + 4], 12);
+}
+
 TEST(FormulaDerivatives, ThreeVariables) {
   const Formula f("x*y*z+z^2", {"x", "y", "z"});
   std::array<double, 3> g{};
