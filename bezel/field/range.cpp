@@ -217,7 +217,9 @@ Range value_range(const Field& field, int component, double rel_tol) {
   if (elements == 0) throw InputError("a mesh without elements has no range of values");
   std::vector<Known> known(elements);
   field_detail::for_elements(mesh, [&](ElementId e) {
-    if (composable(field, e)) {
+    // A first look must be cheap: composing a physical basis with the element's map is not.
+    const bool look = field.space().basis() == Basis::physical && rel_tol > 0.0;
+    if (!look && composable(field, e)) {
       const ReferencePolynomial p = reference_polynomial(field, e, component);
       known[e.index()] = known_from(p.c, p.degree, p.error_bound);
       known[e.index()].lo -= p.error_bound;
@@ -234,8 +236,10 @@ Range value_range(const Field& field, int component, double rel_tol) {
     all.attained_hi = std::max(all.attained_hi, k.attained_hi);
     all.slack = std::max(all.slack, k.slack);
   }
-  const double tol = rel_tol * (all.hi - all.lo);
-  if (tol == 0.0) return {all.lo, all.hi};
+  if (rel_tol == 0.0 || all.hi == all.lo) return {all.lo, all.hi};
+  // Below the rounding of the values themselves (a constant field) there is nothing to find.
+  const double rounding = 64.0 * u * std::max(std::abs(all.lo), std::abs(all.hi));
+  const double tol = std::max({rel_tol * (all.hi - all.lo), all.slack, rounding});
 
   // Elements whose bounds already lie between values attained elsewhere cannot move the ends.
   std::vector<std::size_t> open;
