@@ -32,7 +32,7 @@ int run(const std::string& command) {
 }
 
 std::string quoted(const std::string& text) {
-  return "'" + text + "'";
+  return fmt::format("'{}'", text);
 }
 
 std::vector<Lambda> lattice(int d) {
@@ -126,7 +126,8 @@ void gmsh_shows_fields(const std::string& gmsh) {
                        "Merge \"f.msh\";\nView[0].AdaptVisualizationGrid = 1;\n"
                        "View[0].MaxRecursionLevel = 2;\nView[0].TargetError = 0;\n"
                        "Save View[0] \"f.pos\";\nExit;\n");
-        run("cd " + quoted(folder.path().string()) + " && " + gmsh + " show.geo -0 > log 2>&1");
+        run(fmt::format("cd {} && {} show.geo -0 > log 2>&1", quoted(folder.path().string()),
+                        gmsh));
         const std::string text = io_test::slurp(folder / "f.pos");
         const std::string name = fmt::format("geometry {}, field {} {}", g, q,
                                              continuous ? "continuous" : "discontinuous");
@@ -280,7 +281,7 @@ void vtk_reads_ours(const std::string& python) {
             expected += '\n';
           }
         io_test::spill(folder / name, expected);
-        files += " " + quoted(folder / (name + ".vtu")) + " " + quoted(folder / name);
+        files += fmt::format(" {} {}", quoted(folder / (name + ".vtu")), quoted(folder / name));
       }
   expect(run(python + " check" + files) == 0, "VTK evaluates something else");
 }
@@ -322,7 +323,7 @@ int main_of(int argc, char** argv) {
   const std::string test = argv[1];
   std::string program = quoted(argv[2]);
   const bool vtk = argc > 3;
-  if (vtk) program += " " + quoted(argv[3]);
+  if (vtk) program += fmt::format(" {}", quoted(argv[3]));
   if (std::string(argv[2]) == "none" ||
       run(program + (vtk ? " available" : " --version") + " > /dev/null 2>&1") != 0) {
     fmt::print("skipped: {} is not installed\n", vtk ? "VTK for Python" : "gmsh");
