@@ -27,16 +27,15 @@ std::string with(std::string text, const std::string& what, const std::string& b
   return text.replace(at, what.size(), by);
 }
 
-const std::string
-    triangle =
-        "bezel 1\nmesh triangle degree 1 nodes 3 elements 1\n"                 // 1-2
-        "0x0p+0 0x0p+0\n0x1p+0 -0x0p+0\n0x1.5555555555555p-2 0x1p+0\n0 1 2\n"  // 3-6
-        "groups 1\n2 3 \"a \\\"b\\\"\\n\"\nentities 1\n2 7 1 3\nelement_entities 1\n7\nedges 1\n5 "
-        "0 1\n"                                                 // 7-14
-        "points 1\n6 2\ntime 0x1.999999999999ap-4\nfields 1\n"  // 15-18
-        "field \"u\" components 1 basis reference continuity continuous degree 1\n0x1p+0 0x0p+0 "
-        "0x1p-1\n"
-        "end\n";  // 19-21
+const std::string triangle =
+    "bezel 1\nmesh triangle degree 1 nodes 3 elements 1\n"                 // 1-2
+    "0x0p+0 0x0p+0\n0x1p+0 -0x0p+0\n0x1.5555555555555p-2 0x1p+0\n0 1 2\n"  // 3-6
+    "groups 1\n2 3 \"a \\\"b\\\"\\n\"\nentities 1\n2 7 1 3\nelement_entities 1\n7\nedges 1\n5 "
+    "0 1\n"                                                 // 7-14
+    "points 1\n6 2\ntime 0x1.999999999999ap-4\nfields 1\n"  // 15-18
+    "field \"u\" components 1 basis reference continuity continuous degree 1\n0x1p+0 0x0p+0 "
+    "0x1p-1\n"
+    "end\n";  // 19-21
 
 TEST(Native, TheTextIsStable) {
   const Dataset data = files::read_native("x.bzl", triangle);
