@@ -128,25 +128,31 @@ IntersectSearch::IntersectSearch(const CurveCache& a, const CurveCache& b,
       shallow_(tol_ > 0 ? std::max(1e-13, std::sqrt(tau_ / size_) / 32) : 1e-13),
       parallel_depth_(tol_ > 0 ? 4 : 6) {}
 
-bool IntersectSearch::newton(double& s, double& t, double s0, double s1, double t0,
-                             double t1) const {
+IntersectSearch::Newton IntersectSearch::newton(double& s, double& t, double s0, double s1,
+                                                double t0, double t1) const {
   // Relative to a point near the root the residual is accurate to u times the curves' size there.
   const Vec2 origin = curve_point(m_, a_, s).value;
   for (int i = 0; i < 12; ++i) {
     const CurvePoint p = curve_point(m_, a_, s, origin), q = curve_point(n_, b_, t, origin);
     const Vec2 f = p.value - q.value;
     const double det = cross(q.derivative, p.derivative);
-    if (det == 0.0) return false;
+    if (det == 0.0) return Newton::lost;
     // a' ds - b' dt = -f
     const double ds = cross(f, q.derivative) / det, dt = cross(f, p.derivative) / det;
     const double next_s = std::clamp(s + ds, s0, s1), next_t = std::clamp(t + dt, t0, t1);
     const bool same = next_s == s && next_t == t;
+    const bool clamped = next_s != s + ds || next_t != t + dt;
     s = next_s;
     t = next_t;
-    if (std::fabs(ds) <= 1e-9 * (s1 - s0) && std::fabs(dt) <= 1e-9 * (t1 - t0)) return true;
-    if (same) return norm(f) <= rounding_;
+    if (std::fabs(ds) <= 1e-9 * (s1 - s0) && std::fabs(dt) <= 1e-9 * (t1 - t0)) {
+      if (!clamped) return Newton::root;
+      // The root is beyond the box's border: on it to rounding, or a neighbour's (or nobody's).
+      const Vec2 rest = curve_point(m_, a_, s, origin).value - curve_point(n_, b_, t, origin).value;
+      return norm(rest) <= 4 * rounding_ ? Newton::root : Newton::none;
+    }
+    if (same) return norm(f) <= rounding_ ? Newton::root : Newton::lost;
   }
-  return false;
+  return Newton::lost;
 }
 
 /// C = [chord_a, -chord_b]^-1; with F = a(s) - b(t) in the pieces' own parameters, ||I - C F'|| < 1
@@ -182,7 +188,9 @@ IntersectSearch::Outcome IntersectSearch::transversal(const CurvePiece& a, const
   if (x < -q - 1e-9 || x > 1 + q + 1e-9 || y < -q - 1e-9 || y > 1 + q + 1e-9) return Outcome::none;
   const double s0 = a.lo, s1 = a.hi, t0 = b.lo, t1 = b.hi;
   double s = s0 + (s1 - s0) * std::clamp(x, 0.0, 1.0), t = t0 + (t1 - t0) * std::clamp(y, 0.0, 1.0);
-  if (!newton(s, t, s0, s1, t0, t1)) return Outcome::open;
+  const Newton result = newton(s, t, s0, s1, t0, t1);
+  if (result == Newton::lost) return Outcome::open;
+  if (result == Newton::none) return Outcome::none;
   add_crossing(s, t, s0, s1, t0, t1, det > 0 ? 1 : -1, true);
   return Outcome::one;
 }

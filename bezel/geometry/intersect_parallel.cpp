@@ -312,7 +312,7 @@ class ParallelPair {
     // The nodes themselves are rounded: that moves delta by u times its slope.
     const double node_noise = 0x1p-50 * largest / h;
     const double allowed = exact_ ? 1e-12 * largest + 1e-28 * f_.magnitude_ + node_noise
-                                  : std::max(f_.tau_ / 128, f_.rounding_);
+                                  : std::max(f_.tau_ / 128, 4 * f_.rounding_);
     // Where delta stays far from zero its exact shape does not matter.
     const auto [least, most] = std::minmax_element(piece.c.begin(), piece.c.end());
     const double away = std::max(*least, -*most);

@@ -65,7 +65,9 @@ class IntersectSearch {
   enum class Outcome { none, one, open };
   template <int M, int N>
   Outcome transversal(const CurvePiece& a, const CurvePiece& b);
-  bool newton(double& s, double& t, double s0, double s1, double t0, double t1) const;
+  enum class Newton { root, none, lost };
+  /// Runs to the one root of a box that holds at most one; none: it lies outside.
+  Newton newton(double& s, double& t, double s0, double s1, double t0, double t1) const;
   template <int M, int N>
   void descend(const CurvePiece& a, const CurvePiece& b);
   template <int M, int N>

@@ -15,7 +15,7 @@ namespace {
 /// all the same.
 constexpr double coincidence_fraction = 1e-13;
 /// ... and never less than the rounding of the coordinates themselves.
-constexpr double coordinate_rounding = 8.0 * 0x1p-53;
+constexpr double coordinate_rounding = 32.0 * 0x1p-53;
 /// sin(angle) below which a crossing's direction is not relied on.
 constexpr double reliable_sine = 1e-5;
 
