@@ -161,6 +161,27 @@ void evaluate_scaled(int degree, int components, const double* scaled, double u,
   }
 }
 
+void basis_at(int degree, double u, double v, double* values) {
+  const double first = 1.0 - u - v;
+  std::array<double, 11> p0{};
+  std::array<double, 11> p1{};
+  p0[0] = p1[0] = 1.0;
+  for (std::size_t i = 1; i <= static_cast<std::size_t>(degree); ++i) {
+    p0[i] = p0[i - 1] * first;
+    p1[i] = p1[i - 1] * u;
+  }
+  const auto factors = multinomials(degree);
+  double p2 = 1.0;
+  std::size_t n = 0;
+  for (int k = 0; k <= degree; ++k) {
+    for (int j = 0; j <= degree - k; ++j, ++n) {
+      values[n] = (p0[static_cast<std::size_t>(degree - k - j)] * p1[static_cast<std::size_t>(j)]) *
+                  p2 * factors[n];
+    }
+    p2 *= v;
+  }
+}
+
 std::span<const double> multinomials(int degree) {
   static const auto tables = [] {
     std::array<std::vector<double>, 11> all;

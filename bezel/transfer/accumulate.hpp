@@ -28,6 +28,9 @@ void accumulate(int target_degree, int donor_degree, int components, const doubl
 void evaluate_scaled(int degree, int components, const double* scaled, double u, double v,
                      double* values);
 
+/// Values of the Bernstein basis of degree 0..10 at barycentrics (1-u-v, u, v).
+void basis_at(int degree, double u, double v, double* values);
+
 /// d! / (i! j! k!) in index order.
 std::span<const double> multinomials(int degree);
 

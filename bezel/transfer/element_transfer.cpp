@@ -161,26 +161,21 @@ const IntervalRule& ElementTransfer::rule(int points) {
   return rules_[n];
 }
 
-void ElementTransfer::push(double w, double tu, double tv, double du, double dv) {
-  w_.push_back(w);
-  tu_.push_back(tu);
-  tv_.push_back(tv);
-  du_.push_back(du);
-  dv_.push_back(dv);
+void ElementTransfer::reserve_points(std::size_t more) {
+  const std::size_t needed = count_ + more + lanes;
+  if (w_.size() >= needed) return;
+  for (std::vector<double>* array : {&w_, &tu_, &tv_, &du_, &dv_}) array->resize(2 * needed);
 }
 
 void ElementTransfer::flush(const Group& g, std::int32_t d, int target_degree, Accumulators& sums) {
-  while (w_.size() % lanes != 0) push(0.0, 0.0, 0.0, 0.0, 0.0);
+  reserve_points(0);
+  while (count_ % lanes != 0) push(0.0, 0.0, 0.0, 0.0, 0.0);
   const PointBlock points{w_.data(),  tu_.data(), tv_.data(),
-                          du_.data(), dv_.data(), w_.size() / lanes};
+                          du_.data(), dv_.data(), count_ / lanes};
   accumulate(target_degree, g.donor_space->degree(ElementId(d)), g.components,
              g.donor_scaled(d).data(), points, sums.product.data(), sums.basis.data(),
              sums.mass.data());
-  w_.clear();
-  tu_.clear();
-  tv_.clear();
-  du_.clear();
-  dv_.clear();
+  count_ = 0;
 }
 
 // Gauss nodes on the run's pieces in the plane; exact for integrands of total degree `degree` in x
@@ -254,39 +249,33 @@ void ElementTransfer::reference_nodes(const OverlayMesh& mesh, std::int32_t elem
   }
 }
 
-double ElementTransfer::run_area(std::span<const Segment> run, Vec2& centre) {
-  centre = Vec2{};
-  double count = 0.0;
-  for (const Segment& segment : run) {
-    const bool source = segment.target.edge < 0;
-    const Part& part = source ? segment.source : segment.target;
-    Vec2 x;
-    Vec2 dx;
-    curve_point((source ? donor_ : target_).edge(part.edge), part.from, x, dx);
-    centre += x;
-    count += 1.0;
-  }
-  centre *= 1.0 / count;
-  boundary_nodes(run, false, 0);
-  double twice = 0.0;
-  for (const Node& node : nodes_) twice += cross(node.x - centre, node.dx);
-  return 0.5 * twice;
-}
-
-double ElementTransfer::closure(std::span<const Segment> run) const {
+ElementTransfer::RunShape ElementTransfer::run_shape(std::span<const Segment> run) {
+  RunShape shape{};
+  ends_.clear();
   Vec2 sum;
+  bool straight = true;
   for (const Segment& segment : run) {
     const bool source = segment.target.edge < 0;
     const Part& part = source ? segment.source : segment.target;
     const auto control = (source ? donor_ : target_).edge(part.edge);
-    Vec2 a;
-    Vec2 b;
-    Vec2 unused;
-    curve_point(control, part.from, a, unused);
-    curve_point(control, part.to, b, unused);
+    const Vec2 a = curve_point(control, part.from);
+    const Vec2 b = curve_point(control, part.to);
+    ends_.push_back({a, b});
+    shape.centre += a;
     sum += b - a;
+    straight = straight && control.size() == 2;
   }
-  return norm(sum);
+  shape.centre *= 1.0 / static_cast<double>(run.size());
+  shape.gap = norm(sum);
+  double twice = 0.0;
+  if (straight) {
+    for (const auto& [a, b] : ends_) twice += cross(a - shape.centre, b - shape.centre);
+  } else {
+    boundary_nodes(run, false, 0);
+    for (const Node& node : nodes_) twice += cross(node.x - shape.centre, node.dx);
+  }
+  shape.area = 0.5 * twice;
+  return shape;
 }
 
 std::array<double, 2> ElementTransfer::target_place(const Group& g, std::int32_t t,
@@ -331,6 +320,7 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
   const auto physical_fan = [&](int degree, int target_degree, Accumulators& into) {
     boundary_nodes(run, false, degree);
     const IntervalRule& radial = rule((degree + 3) / 2);
+    reserve_points(nodes_.size() * radial.node.size());
     const auto donor_at = [&](const Vec2& x) {
       if (g.donor_mapped) return std::array<double, 2>{0.0, 0.0};
       const auto l = g.donor_frame[static_cast<std::size_t>(d)].lambda(x);
@@ -378,6 +368,7 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
     reference_nodes(target_, t, run, false, degree);
     const auto qc = reference_centre();
     const IntervalRule& radial = rule((degree + 3) / 2);
+    reserve_points(nodes_.size() * radial.node.size());
     std::array<double, 3> warm{};
     bool have_warm = false;
     for (const Node& node : nodes_) {
@@ -403,6 +394,7 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
     reference_nodes(donor_, d, run, true, degree);
     const auto qc = reference_centre();
     const IntervalRule& radial = rule((degree + 3) / 2);
+    reserve_points(nodes_.size() * radial.node.size());
     Accumulators mapped;
     mapped.reset(functions, nc);
     for (const Node& node : nodes_) {
@@ -437,6 +429,7 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
   const int degree = pd + 2 * (donor_.degree - 1);
   reference_nodes(donor_, d, run, true, degree + inexact_extra);
   const IntervalRule& radial = rule((degree + 3) / 2);
+  reserve_points(nodes_.size() * radial.node.size());
   const double third = 1.0 / 3.0;
   double weight = 0.0;
   for (const Node& node : nodes_) {
@@ -510,7 +503,7 @@ void ElementTransfer::add_extension(const Group& g, std::int32_t t, std::span<co
                     q[0], q[1], value.data());
     if (!have_first) first = value;
     have_first = true;
-    bernstein::basis(pt, {1.0 - place[0] - place[1], place[0], place[1]}, phi);
+    basis_at(pt, place[0], place[1], phi.data());
     for (std::size_t n = 0; n < phi.size(); ++n) {
       const double weighted = w * phi[n] / factors[n];
       sums.basis[n] += weighted;
@@ -528,6 +521,7 @@ void ElementTransfer::add_extension(const Group& g, std::int32_t t, std::span<co
       qc[1] += node.q[1] / static_cast<double>(nodes_.size());
     }
     const IntervalRule& radial = rule((degree + 3) / 2);
+    reserve_points(nodes_.size() * radial.node.size());
     for (const Node& node : nodes_) {
       const std::array<double, 2> arm{node.q[0] - qc[0], node.q[1] - qc[1]};
       const double kappa = arm[0] * node.dq[1] - arm[1] * node.dq[0];
@@ -542,6 +536,7 @@ void ElementTransfer::add_extension(const Group& g, std::int32_t t, std::span<co
     const int degree = pt + pd;
     boundary_nodes(run, false, degree);
     const IntervalRule& radial = rule((degree + 3) / 2);
+    reserve_points(nodes_.size() * radial.node.size());
     for (const Node& node : nodes_) {
       const double kappa = cross(node.x - centre, node.dx);
       for (std::size_t i = 0; i < radial.node.size(); ++i) {
@@ -553,51 +548,105 @@ void ElementTransfer::add_extension(const Group& g, std::int32_t t, std::span<co
   for (std::size_t c = 0; c < nc; ++c) made[c] = first[c] * area + difference[c];
 }
 
-ElementTransfer::Factor ElementTransfer::factor(const Group& g, std::int32_t t) {
+const ElementTransfer::MassRule& ElementTransfer::mass_rule(int degree) {
+  for (const MassRule& known : mass_rules_) {
+    if (known.degree == degree) return known;
+  }
+  const TriangleRule points = any_triangle_rule(degree);
+  const int g = target_.degree;
+  MassRule made{degree, {}, {}, {}};
+  std::vector<double> lower(static_cast<std::size_t>(bernstein::triangle_size(g - 1)));
+  std::vector<double> value(target_.element_size);
+  for (std::size_t q = 0; q < points.weight.size(); ++q) {
+    const auto& l = points.lambda[q];
+    made.place.push_back({l[1], l[2]});
+    made.weight.push_back(points.weight[q]);
+    basis_at(g, l[1], l[2], value.data());
+    basis_at(g - 1, l[1], l[2], lower.data());
+    // d/du B_ijk = g (B_{i,j-1,k} - B_{i-1,j,k}), both of degree g-1; the same for v with k.
+    int n = 0;
+    for (int k = 0; k <= g; ++k) {
+      for (int j = 0; j <= g - k; ++j, ++n) {
+        const auto at = [&](int jj, int kk) {
+          return jj < 0 || kk < 0 || jj + kk > g - 1
+                     ? 0.0
+                     : lower[static_cast<std::size_t>(bernstein::triangle_index(g - 1, jj, kk))];
+        };
+        const double first = at(j, k);
+        made.map.push_back({value[static_cast<std::size_t>(n)], g * (at(j - 1, k) - first),
+                            g * (at(j, k - 1) - first)});
+      }
+    }
+  }
+  mass_rules_.push_back(std::move(made));
+  return mass_rules_.back();
+}
+
+bool ElementTransfer::cholesky(std::size_t n, std::vector<double>& lower) {
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t i = j; i < n; ++i) {
+      double sum = lower[i * n + j];
+      for (std::size_t k = 0; k < j; ++k) sum -= lower[i * n + k] * lower[j * n + k];
+      if (i == j) {
+        if (!(sum > 0.0)) return false;
+        lower[j * n + j] = std::sqrt(sum);
+      } else {
+        lower[i * n + j] = sum / lower[j * n + j];
+      }
+    }
+  }
+  return true;
+}
+
+const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int32_t t) {
   const int p = g.target_space->degree(ElementId(t));
   const int gd = target_.degree;
-  const int degree = g.target_mapped ? 2 * p + 2 * (gd - 1) : 2 * p * gd + 2 * (gd - 1);
-  if (cached_rule_degree_ != degree) {
-    cached_rule_ = any_triangle_rule(degree);
-    cached_rule_degree_ = degree;
-  }
   const auto n = static_cast<std::size_t>(bernstein::triangle_size(p));
-  Factor f;
+  Factor& f = factor_;
+  if (gd == 1) {
+    // A straight triangle's own barycentrics: one matrix for all, times twice the area.
+    if (reference_degree_ != p) {
+      reference_lower_ = bernstein::mass_matrix(p);
+      cholesky(n, reference_lower_);
+      reference_degree_ = p;
+    }
+    const double area = target_.element_area[static_cast<std::size_t>(t)];
+    const double scale = std::sqrt(2.0 * area);
+    f.lower.resize(n * n);
+    for (std::size_t i = 0; i < n * n; ++i) f.lower[i] = reference_lower_[i] * scale;
+    f.integrals.assign(n, area / static_cast<double>(n));
+    return f;
+  }
+  const int degree = g.target_mapped ? 2 * p + 2 * (gd - 1) : 2 * p * gd + 2 * (gd - 1);
+  const MassRule& points = mass_rule(degree);
   f.lower.assign(n * n, 0.0);
   f.integrals.assign(n, 0.0);
   std::vector<double>& phi = scratch_;
   phi.resize(n);
-  for (std::size_t q = 0; q < cached_rule_.weight.size(); ++q) {
-    const auto& l = cached_rule_.lambda[q];
-    const MapPoint map = map_point(target_, t, {l[1], l[2]});
-    Lambda place = l;
-    if (!g.target_mapped) {
-      const auto own = target_place(g, t, map.x);
-      place = {1.0 - own[0] - own[1], own[0], own[1]};
+  const auto control = target_.element(t);
+  for (std::size_t q = 0; q < points.weight.size(); ++q) {
+    const std::array<double, 3>* map = points.map.data() + q * target_.element_size;
+    Vec2 x;
+    Vec2 du;
+    Vec2 dv;
+    for (std::size_t i = 0; i < target_.element_size; ++i) {
+      x += control[i] * map[i][0];
+      du += control[i] * map[i][1];
+      dv += control[i] * map[i][2];
     }
-    bernstein::basis(p, place, phi);
-    const double w = cached_rule_.weight[q] * map.det;
+    const auto place = g.target_mapped ? points.place[q] : target_place(g, t, x);
+    basis_at(p, place[0], place[1], phi.data());
+    const double w = points.weight[q] * cross(du, dv);
     for (std::size_t i = 0; i < n; ++i) {
       const double wi = w * phi[i];
       f.integrals[i] += wi;
       for (std::size_t j = 0; j <= i; ++j) f.lower[i * n + j] += wi * phi[j];
     }
   }
-  for (std::size_t j = 0; j < n; ++j) {
-    for (std::size_t i = j; i < n; ++i) {
-      double sum = f.lower[i * n + j];
-      for (std::size_t k = 0; k < j; ++k) sum -= f.lower[i * n + k] * f.lower[j * n + k];
-      if (i == j) {
-        if (!(sum > 0.0)) {
-          throw NumericsError("target triangle " + std::to_string(t) +
-                              ": its mass matrix is singular in double precision (degree " +
-                              std::to_string(p) + " on a degenerate element)");
-        }
-        f.lower[j * n + j] = std::sqrt(sum);
-      } else {
-        f.lower[i * n + j] = sum / f.lower[j * n + j];
-      }
-    }
+  if (!cholesky(n, f.lower)) {
+    throw NumericsError("target triangle " + std::to_string(t) +
+                        ": its mass matrix is singular in double precision (degree " +
+                        std::to_string(p) + " on a degenerate element)");
   }
   return f;
 }
@@ -609,7 +658,7 @@ void ElementTransfer::finish(Group& g, std::int32_t t, Accumulators& sums,
   const auto nc = static_cast<std::size_t>(g.components);
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
   const bool full = std::abs(area - own_area) <= 1e-9 * own_area;
-  const Factor f = factor(g, t);
+  const Factor& f = factor(g, t);
   const auto factors = multinomials(p);
   const std::span<double> result = g.target_out(t);
   std::vector<double>& rhs = scratch_;
@@ -685,9 +734,10 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
     const auto run = segments.subspan(begin, end - begin);
     const std::int32_t d = segments[begin].donor;
     begin = end;
-    Vec2 centre;
-    const double area = run_area(run, centre);
-    const double open = closure(run);
+    const RunShape shape = run_shape(run);
+    const Vec2 centre = shape.centre;
+    const double area = shape.area;
+    const double open = shape.gap;
     double smaller = own_size;
     if (d != exterior)
       smaller = std::min(smaller, donor_.element_box[static_cast<std::size_t>(d)].diameter());

@@ -84,8 +84,12 @@ class ElementTransfer {
 
   const IntervalRule& rule(int points);
   void boundary_nodes(std::span<const Segment> run, bool use_source, int degree);
-  double run_area(std::span<const Segment> run, Vec2& centre);
-  double closure(std::span<const Segment> run) const;
+  struct RunShape {
+    Vec2 centre;  // mean of the corners
+    double area;
+    double gap;  // by how much the pieces fail to close
+  };
+  RunShape run_shape(std::span<const Segment> run);
   void flush(const Group& g, std::int32_t d, int target_degree, Accumulators& sums);
   void add_pair(const Group& g, std::int32_t t, std::int32_t d, std::span<const Segment> run,
                 double area, const Vec2& centre, Accumulators& sums, std::span<double> mass);
@@ -93,8 +97,28 @@ class ElementTransfer {
                      const Vec2& centre, Accumulators& sums, std::span<double> made);
   void finish(Group& g, std::int32_t t, Accumulators& sums, std::span<const double> mass,
               double area, ElementOutcome& outcome);
-  Factor factor(const Group& g, std::int32_t t);
-  void push(double w, double tu, double tv, double du, double dv);
+  /// Quadrature on the target's reference triangle with the basis functions of its map at the
+  /// points.
+  struct MassRule {
+    int degree;
+    std::vector<std::array<double, 2>> place;
+    std::vector<double> weight;
+    std::vector<std::array<double, 3>>
+        map;  // value, d/du, d/dv of each geometry basis function, point by point
+  };
+  const MassRule& mass_rule(int degree);
+  static bool cholesky(std::size_t n, std::vector<double>& lower);
+  const Factor& factor(const Group& g, std::int32_t t);
+  /// Makes room for `more` points in the arrays.
+  void reserve_points(std::size_t more);
+  void push(double w, double tu, double tv, double du, double dv) {
+    const std::size_t i = count_++;
+    w_[i] = w;
+    tu_[i] = tu;
+    tv_[i] = tv;
+    du_[i] = du;
+    dv_[i] = dv;
+  }
   std::array<double, 2> target_place(const Group& g, std::int32_t t, const Vec2& x) const;
   std::array<double, 2> donor_place(const Group& g, std::int32_t d, const Vec2& x,
                                     std::array<double, 3>& warm, bool& have_warm) const;
@@ -108,12 +132,16 @@ class ElementTransfer {
   Uncovered policy_;
   std::vector<IntervalRule> rules_;
   std::vector<Node> nodes_;
-  std::vector<double> w_, tu_, tv_, du_, dv_;
+  std::vector<std::pair<Vec2, Vec2>> ends_;
+  std::vector<double> w_, tu_, tv_, du_, dv_;  // quadrature points, the first count_ in use
+  std::size_t count_ = 0;
   std::vector<Accumulators> sums_;
   std::vector<double> masses_, pair_mass_;
   std::vector<double> scratch_;
-  TriangleRule cached_rule_;
-  int cached_rule_degree_ = -1;
+  std::vector<MassRule> mass_rules_;
+  Factor factor_;
+  std::vector<double> reference_lower_;
+  int reference_degree_ = -1;
 };
 
 }  // namespace bezel::detail

@@ -28,13 +28,6 @@ double coincidence_distance(const Box2& a, const Box2& b) {
                   coordinate_rounding * std::max(largest_coordinate(a), largest_coordinate(b)));
 }
 
-Vec2 point_at(std::span<const Vec2> control, double t) {
-  Vec2 p;
-  Vec2 d;
-  curve_point(control, t, p, d);
-  return p;
-}
-
 // Where a piece is looked at; the middle first, the others only when the middle is too close to an
 // edge.
 constexpr std::array<double, 5> looks = {0.5, 0.25, 0.75, 0.0625, 0.9375};
@@ -48,23 +41,6 @@ bool is_inner(double r) {
 constexpr double clear_margin = 1e-7;
 
 }  // namespace
-
-void curve_point(std::span<const Vec2> control, double t, Vec2& point, Vec2& derivative) {
-  const std::size_t n = control.size();
-  std::array<Vec2, 12> b;
-  for (std::size_t i = 0; i < n; ++i) b[i] = control[i];
-  const double s = 1.0 - t;
-  for (std::size_t k = n - 1; k > 1; --k) {
-    for (std::size_t i = 0; i < k; ++i) b[i] = b[i] * s + b[i + 1] * t;
-  }
-  if (n == 1) {
-    point = b[0];
-    derivative = Vec2{};
-    return;
-  }
-  derivative = (b[1] - b[0]) * static_cast<double>(n - 1);
-  point = b[0] * s + b[1] * t;
-}
 
 ElementOverlay::ElementOverlay(const OverlayMesh& donor, const OverlayMesh& target,
                                const FrontSearch& search)
@@ -96,7 +72,6 @@ void ElementOverlay::collect_candidate_edges() {
       candidate_edges_.push_back(side.edge.value);
     }
   }
-  std::sort(candidate_edges_.begin(), candidate_edges_.end());
 }
 
 std::int32_t ElementOverlay::best_donor(const Vec2& p, double& margin) const {
@@ -118,7 +93,7 @@ std::int32_t ElementOverlay::locate_piece(std::span<const Vec2> curve, double r0
   double clearest = -1.0;
   for (const double look : looks) {
     double margin = 0.0;
-    const std::int32_t d = best_donor(point_at(curve, r0 + look * (r1 - r0)), margin);
+    const std::int32_t d = best_donor(curve_point(curve, r0 + look * (r1 - r0)), margin);
     if (std::abs(margin) > clearest) {
       clearest = std::abs(margin);
       answer = d;
@@ -133,7 +108,7 @@ bool ElementOverlay::inside_target(std::int32_t t, std::span<const Vec2> curve, 
   bool answer = false;
   double clearest = -1.0;
   for (const double look : looks) {
-    const double margin = inside_margin(target_, t, point_at(curve, s0 + look * (s1 - s0)));
+    const double margin = inside_margin(target_, t, curve_point(curve, s0 + look * (s1 - s0)));
     if (std::abs(margin) > clearest) {
       clearest = std::abs(margin);
       answer = margin > 0.0;
@@ -163,7 +138,8 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
     IntersectOptions options;
     options.coincidence_distance = distance;
     const auto donor_curve = donor_.edge(e);
-    intersect(curve, donor_curve, options, found_);
+    intersect(target_.edge_cache[static_cast<std::size_t>(edge)],
+              donor_.edge_cache[static_cast<std::size_t>(e)], options, found_);
     for (const Crossing& c : found_.crossings) {
       Vec2 pa;
       Vec2 da;
@@ -289,21 +265,22 @@ void ElementOverlay::donor_edges_inside(std::int32_t t) {
     }
   }
 
-  std::size_t next = 0;
+  // Edges without a contact are inside T or outside it as a whole.
+  for (const Mark& mark : marks_) edge_stamp_[static_cast<std::size_t>(mark.edge)] = edge_now_ - 1;
+  const Box2& box = target_.element_box[static_cast<std::size_t>(t)];
   for (const std::int32_t e : candidate_edges_) {
-    while (next < marks_.size() && marks_[next].edge < e) ++next;
+    if (edge_stamp_[static_cast<std::size_t>(e)] != edge_now_) continue;
+    const auto curve = donor_.edge(e);
+    if (box.contains(curve.front()) && box.contains(curve.back()) &&
+        inside_target(t, curve, 0.0, 1.0)) {
+      add_donor_part(e, 0.0, 1.0);
+    }
+  }
+  for (std::size_t next = 0; next < marks_.size();) {
     const std::size_t first = next;
+    const std::int32_t e = marks_[first].edge;
     while (next < marks_.size() && marks_[next].edge == e) ++next;
     const auto curve = donor_.edge(e);
-    if (first == next) {
-      // No contact: the whole edge is inside T or outside it.
-      const Box2& box = target_.element_box[static_cast<std::size_t>(t)];
-      if (box.contains(curve.front()) && box.contains(curve.back()) &&
-          inside_target(t, curve, 0.0, 1.0)) {
-        add_donor_part(e, 0.0, 1.0);
-      }
-      continue;
-    }
     double s = 0.0;
     std::int8_t direction = 0;
     for (std::size_t i = first; i <= next; ++i) {
@@ -377,7 +354,8 @@ std::span<const Segment> ElementOverlay::segments(std::int32_t t, OverlayCounts&
           if (r == c.r0) return c.s0;
           if (r == c.r1) return c.s1;
           return std::clamp(
-              foot_point(donor_.edge(c.donor_edge), point_at(target_.edge(side.edge.value), r)).s,
+              foot_point(donor_.edge(c.donor_edge), curve_point(target_.edge(side.edge.value), r))
+                  .s,
               std::min(c.s0, c.s1), std::max(c.s0, c.s1));
         };
         segment.source = {c.donor_edge, map(piece.r0), map(piece.r1)};
@@ -393,8 +371,18 @@ std::span<const Segment> ElementOverlay::segments(std::int32_t t, OverlayCounts&
     }
   }
   donor_edges_inside(t);
-  std::stable_sort(segments_.begin(), segments_.end(),
-                   [](const Segment& a, const Segment& b) { return a.donor < b.donor; });
+  if (segments_.size() > 200) {
+    std::stable_sort(segments_.begin(), segments_.end(),
+                     [](const Segment& a, const Segment& b) { return a.donor < b.donor; });
+    return segments_;
+  }
+  // Few segments, mostly in order: a stable insertion sort needs no memory.
+  for (std::size_t i = 1; i < segments_.size(); ++i) {
+    const Segment moved = segments_[i];
+    std::size_t k = i;
+    for (; k > 0 && segments_[k - 1].donor > moved.donor; --k) segments_[k] = segments_[k - 1];
+    segments_[k] = moved;
+  }
   return segments_;
 }
 

@@ -7,6 +7,7 @@
 // D is the pieces of T's edges inside D, the pieces of D's edges inside T, and the pieces on both
 // (counted once).
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -111,7 +112,38 @@ class ElementOverlay {
   CurveIntersections found_;
 };
 
-/// Point of a Bezier curve and its derivative; degree <= 10, unchecked.
-void curve_point(std::span<const Vec2> control, double t, Vec2& point, Vec2& derivative);
+/// Point of a Bezier curve and its derivative; 2 to 11 control points, unchecked.
+inline void curve_point(std::span<const Vec2> control, double t, Vec2& point, Vec2& derivative) {
+  const std::size_t n = control.size();
+  const double s = 1.0 - t;
+  if (n == 2) {
+    derivative = control[1] - control[0];
+    point = control[0] * s + control[1] * t;
+    return;
+  }
+  if (n == 3) {
+    const Vec2 a = control[0] * s + control[1] * t;
+    const Vec2 b = control[1] * s + control[2] * t;
+    derivative = (b - a) * 2.0;
+    point = a * s + b * t;
+    return;
+  }
+  std::array<Vec2, TriangleMesh::max_degree + 1> b;
+  for (std::size_t i = 0; i < n; ++i) b[i] = control[i];
+  for (std::size_t k = n - 1; k > 1; --k) {
+    for (std::size_t i = 0; i < k; ++i) b[i] = b[i] * s + b[i + 1] * t;
+  }
+  derivative = (b[1] - b[0]) * static_cast<double>(n - 1);
+  point = b[0] * s + b[1] * t;
+}
+
+inline Vec2 curve_point(std::span<const Vec2> control, double t) {
+  if (t == 0.0) return control.front();
+  if (t == 1.0) return control.back();
+  Vec2 point;
+  Vec2 unused;
+  curve_point(control, t, point, unused);
+  return point;
+}
 
 }  // namespace bezel::detail

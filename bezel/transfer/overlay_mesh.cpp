@@ -35,11 +35,13 @@ OverlayMesh::OverlayMesh(std::shared_ptr<const TriangleMesh> source, const std::
   const auto edge_size = static_cast<std::size_t>(degree + 1);
   edge_control.resize(edges * edge_size);
   edge_box.resize(edges);
+  edge_cache.resize(edges);
   edge_sides.resize(edges);
   for (std::size_t e = 0; e < edges; ++e) {
     const std::span<Vec2> control(edge_control.data() + e * edge_size, edge_size);
     mesh->gather_edge(EdgeId(e), control);
     for (const Vec2& p : control) edge_box[e].include(p);
+    edge_cache[e] = cache_curve(control);
     edge_sides[e] = {exterior, exterior};
     for (const ElementSide& side : mesh->adjacent(EdgeId(e))) {
       std::int32_t& place = edge_sides[e][side.reversed ? 1 : 0];

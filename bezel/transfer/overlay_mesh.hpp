@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bezel/geometry/curve.hpp"
 #include "bezel/mesh/bvh.hpp"
 #include "bezel/mesh/mesh.hpp"
 
@@ -27,6 +28,7 @@ struct OverlayMesh {
   std::size_t element_size = 0;    ///< control points per element
   std::vector<Vec2> edge_control;  ///< (degree+1) per edge, canonical direction
   std::vector<Box2> edge_box;
+  std::vector<CurveCache> edge_cache;
   std::vector<std::array<std::int32_t, 2>>
       edge_sides;  ///< element left and right of each edge, or exterior
   std::vector<std::array<SideEdge, 3>> element_edges;
