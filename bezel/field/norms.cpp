@@ -47,6 +47,16 @@ std::vector<double> sum_elements(std::span<const double> values, std::size_t n) 
   return total;
 }
 
+/// The element lies in its frame (to rounding): all its control points do.
+bool in_frame(const Space& space, ElementId e) {
+  const Frame& frame = space.frame(e);
+  for (const NodeId n : space.mesh()->nodes(e)) {
+    const Lambda l = frame.lambda(space.mesh()->control(n));
+    if (std::min({l[0], l[1], l[2]}) < -1e-12) return false;
+  }
+  return true;
+}
+
 /// The rule on the pieces of the reference triangle.
 TriangleRule on_pieces(const TriangleRule& rule) {
   std::vector<std::array<Lambda, 3>> triangles{{Lambda{1, 0, 0}, Lambda{0, 1, 0}, Lambda{0, 0, 1}}};
@@ -140,9 +150,12 @@ std::vector<double> integral_abs(const Field& field, int threads) {
             positive = positive || c[i] > 0.0;
             negative = negative || c[i] < 0.0;
           }
-          // Coefficients of one sign say that of f inside the frame or the reference triangle; a
-          // physical element reaches out of its frame, so there the values decide.
-          if (!(positive && negative) && space.basis() == Basis::reference) continue;
+          // Coefficients of one sign say that of f inside the reference triangle or the frame. An
+          // element that reaches out of a frame given by the caller is left to its values.
+          if (!(positive && negative) &&
+              (space.basis() == Basis::reference || in_frame(space, e))) {
+            continue;
+          }
           if (values.empty()) {
             const TriangleRule& rule = split[at(space.degree(e))];
             w = measure(ElementMap(field.mesh(), e), rule.lambda, rule.weight);

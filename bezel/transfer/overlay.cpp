@@ -127,8 +127,14 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
   record.coincidence_begin = static_cast<std::uint32_t>(coincidences_.size());
   record.piece_begin = static_cast<std::uint32_t>(pieces_.size());
 
+  Box2 generous = box;
+  const double generous_room =
+      std::max(1e-9 * box.diameter(), coordinate_rounding * largest_coordinate(box));
+  generous.lo -= Vec2{{generous_room, generous_room}};
+  generous.hi += Vec2{{generous_room, generous_room}};
   for (const std::int32_t e : candidate_edges_) {
     const Box2& other = donor_.edge_box[static_cast<std::size_t>(e)];
+    if (!generous.overlaps(other)) continue;
     const double distance = coincidence_distance(box, other);
     const Vec2 room{{distance, distance}};
     Box2 wide = box;
