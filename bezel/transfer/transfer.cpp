@@ -7,6 +7,7 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <tuple>
 
 #include "bezel/base/parallel.hpp"
 #include "bezel/numeric/sum.hpp"
@@ -333,6 +334,50 @@ TransferResult transfer(std::span<const Field> donors,
   }
   report.seconds.total = seconds_since(start);
   return transferred;
+}
+
+std::vector<OverlapArea> overlap_areas(std::shared_ptr<const TriangleMesh> donor_mesh,
+                                       std::shared_ptr<const TriangleMesh> target_mesh,
+                                       int threads) {
+  const detail::OverlayMesh donor(std::move(donor_mesh), "donor", threads);
+  const detail::OverlayMesh target(std::move(target_mesh), "target", threads);
+  const detail::FrontSearch search(donor);
+  const std::vector<std::int32_t> order = target.spatial_order();
+  const std::size_t chunks = (order.size() + chunk_size - 1) / chunk_size;
+  std::vector<std::vector<OverlapArea>> parts(chunks);
+  WorkerPool pool([&] {
+    return std::make_unique<Worker>(donor, target, search, std::span<detail::Group>(),
+                                    Uncovered::zero);
+  });
+  parallel_for(
+      chunks,
+      [&](std::size_t chunk) {
+        auto worker = pool.take();
+        worker->overlay.begin_chunk();
+        detail::OverlayCounts counts;
+        for (std::size_t i = chunk * chunk_size;
+             i < std::min(order.size(), (chunk + 1) * chunk_size); ++i) {
+          const std::int32_t t = order[i];
+          detail::GivenList given;
+          const auto outcome =
+              worker->element.process(t, worker->overlay.segments(t, counts), given, {});
+          if (outcome.inconsistent) {
+            throw NumericsError("the common refinement is inconsistent at target triangle " +
+                                std::to_string(t));
+          }
+          for (std::size_t k = 0; k < given.donor.size(); ++k) {
+            parts[chunk].push_back({ElementId(t), ElementId(given.donor[k]), given.area[k]});
+          }
+        }
+        pool.give(std::move(worker));
+      },
+      threads);
+  std::vector<OverlapArea> all;
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  std::sort(all.begin(), all.end(), [](const OverlapArea& a, const OverlapArea& b) {
+    return std::tie(a.target, a.donor) < std::tie(b.target, b.donor);
+  });
+  return all;
 }
 
 }  // namespace bezel

@@ -82,4 +82,17 @@ class UncoveredError : public InputError {
 TransferResult transfer(std::span<const Field> donors, std::shared_ptr<const TriangleMesh> target,
                         const TransferOptions& options = {}, const Progress& progress = {});
 
+/// The area that one target and one donor element share.
+struct OverlapArea {
+  ElementId target, donor;
+  double area;  ///< squared length units, exact up to rounding
+};
+
+/// The pairs of elements of two meshes that overlap, with the areas of their intersections, by
+/// target, then donor. Pairs that only touch may appear with an area of the size of rounding.
+/// @throws InputError for inverted elements; NumericsError where the overlay does not close
+/// @cost   as transfer() without fields
+std::vector<OverlapArea> overlap_areas(std::shared_ptr<const TriangleMesh> donor,
+                                       std::shared_ptr<const TriangleMesh> target, int threads = 0);
+
 }  // namespace bezel
