@@ -25,7 +25,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-LIBRARIES = ["-lfmt", "-ltbb", "-lhwy", "-lqhull_r", "-lpugixml", "-lz", "-lpng"]
+LIBRARIES = ["-lfmt", "-ltbb", "-lhwy", "-lpugixml", "-lz", "-lpng"]
 LIMIT = 300  # seconds for one block
 
 
