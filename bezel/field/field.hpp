@@ -114,8 +114,8 @@ ReferencePolynomial reference_polynomial(const Field& field, ElementId e, int co
 /// Certified range of one component over the mesh: contains every value of the field.
 /// @param rel_tol  each end lies within rel_tol (of the width of the coefficients' range) of the
 /// true one (and not
-///                 below the rounding of the values); 0: the coefficients' range. Where d g > 40 in a physical basis the search stops at
-///                 2^-12 of an element
+///                 below the rounding of the values); 0: the coefficients' range. Where d g > 40 in
+///                 a physical basis the search stops at 2^-12 of an element
 /// @throws InputError for a component that does not exist or rel_tol outside [0, 1]
 bernstein::Range value_range(const Field& field, int component, double rel_tol = 1e-3);
 

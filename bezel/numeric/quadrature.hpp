@@ -14,7 +14,8 @@ struct IntervalRule {
 
 /// Gauss-Legendre with n >= 1 points (n <= 200), exact to degree 2n-1; nodes ascending.
 IntervalRule gauss_legendre(int n);
-/// Gauss-Lobatto with n >= 2 points (n <= 200), exact to degree 2n-3; nodes ascending, end points included.
+/// Gauss-Lobatto with n >= 2 points (n <= 200), exact to degree 2n-3; nodes ascending, end points
+/// included.
 IntervalRule gauss_lobatto(int n);
 
 /// A rule on the reference triangle {u, v >= 0, u + v <= 1}; weights sum to 1/2 (its area).
@@ -24,8 +25,8 @@ struct TriangleRule {
   int size() const { return static_cast<int>(weight.size()); }
 };
 
-/// A rule exact for all polynomials of total degree <= degree, 0 <= degree <= 80, with positive weights
-/// and interior points.
+/// A rule exact for all polynomials of total degree <= degree, 0 <= degree <= 80, with positive
+/// weights and interior points.
 TriangleRule triangle_rule(int degree);
 
 }  // namespace bezel
