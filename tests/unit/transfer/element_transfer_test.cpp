@@ -1,0 +1,97 @@
+#include "bezel/transfer/element_transfer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "support/meshes.hpp"
+
+namespace bezel::detail {
+namespace {
+
+struct Pair {
+  Pair(const std::shared_ptr<const TriangleMesh>& a, const std::shared_ptr<const TriangleMesh>& b)
+      : donor(a, "donor", 1),
+        target(b, "target", 1),
+        search(donor),
+        overlay(donor, target, search) {
+    overlay.begin_chunk();
+  }
+  OverlayMesh donor, target;
+  FrontSearch search;
+  ElementOverlay overlay;
+  OverlayCounts counts;
+};
+
+TEST(ElementTransfer, WithoutFieldsItMeasuresAreas) {
+  Pair pair(test::grid_mesh(4, 2, 1.0, test::bend(0.15, 0.1)),
+            test::grid_mesh(3, 3, 0.7, test::bend(0.1, 0.1)));
+  ElementTransfer element(pair.donor, pair.target, pair.search, {}, Uncovered::error);
+  for (std::size_t t = 0; t < pair.target.element_count(); ++t) {
+    GivenList given;
+    const auto id = static_cast<std::int32_t>(t);
+    const ElementOutcome outcome =
+        element.process(id, pair.overlay.segments(id, pair.counts), given, {});
+    EXPECT_FALSE(outcome.inconsistent);
+    EXPECT_EQ(outcome.pairs, static_cast<std::int32_t>(given.donor.size()));
+    EXPECT_NEAR(std::accumulate(given.area.begin(), given.area.end(), 0.0),
+                pair.target.element_area[t], 1e-15);
+    EXPECT_LE(std::abs(outcome.uncovered_area), 1e-15);
+  }
+}
+
+TEST(ElementTransfer, APieceThatIsMissingIsNoticed) {
+  Pair pair(test::grid_mesh(4, 2, 1.0, test::bend(0.15, 0.1)),
+            test::grid_mesh(3, 2, 0.7, test::bend(0.1, 0.1)));
+  ElementTransfer element(pair.donor, pair.target, pair.search, {}, Uncovered::error);
+  const auto segments = pair.overlay.segments(4, pair.counts);
+  ASSERT_GT(segments.size(), 4U);
+  for (std::size_t left_out = 0; left_out < segments.size(); ++left_out) {
+    std::vector<Segment> broken(segments.begin(), segments.end());
+    broken.erase(broken.begin() + static_cast<std::ptrdiff_t>(left_out));
+    GivenList given;
+    EXPECT_TRUE(element.process(4, broken, given, {}).inconsistent) << "without piece " << left_out;
+  }
+}
+
+TEST(ElementTransfer, APieceGivenToTheWrongElementIsNoticed) {
+  Pair pair(test::grid_mesh(4, 2, 1.0, test::bend(0.15, 0.1)),
+            test::grid_mesh(3, 2, 0.7, test::bend(0.1, 0.1)));
+  ElementTransfer element(pair.donor, pair.target, pair.search, {}, Uncovered::error);
+  const auto segments = pair.overlay.segments(4, pair.counts);
+  std::vector<Segment> broken(segments.begin(), segments.end());
+  std::size_t moved = 0;
+  while (broken[moved].donor == broken.back().donor) ++moved;
+  broken[moved].donor = broken.back().donor;
+  std::stable_sort(broken.begin(), broken.end(),
+                   [](const Segment& a, const Segment& b) { return a.donor < b.donor; });
+  GivenList given;
+  const ElementOutcome outcome = element.process(4, broken, given, {});
+  EXPECT_TRUE(outcome.inconsistent);
+  EXPECT_GT(outcome.max_joint_gap, 1e-3);
+}
+
+TEST(Group, HoldsTheComponentsOfItsFields) {
+  const auto mesh = test::grid_mesh(2, 2, 1.0, test::bend(0.1, 0.1));
+  const OverlayMesh overlay(mesh, "donor", 1);
+  const auto space = Space::discontinuous(mesh, 1);
+  const std::vector<Formula> velocity = {Formula("2"), Formula("3")};
+  const Formula one("1");
+  const Field a = project("velocity", space, velocity);
+  const Field b = project("one", space, {&one, 1});
+  const std::vector<const Field*> fields = {&a, &b};
+  const Group group(overlay, overlay, fields, space);
+  EXPECT_EQ(group.components, 3);
+  EXPECT_TRUE(group.donor_mapped);
+  EXPECT_EQ(group.donor_scaled(0).size(), 9U);
+  for (std::size_t e = 0; e < mesh->element_count(); ++e) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double value = c == 0 ? 2.0 : c == 1 ? 3.0 : 1.0;
+      EXPECT_NEAR(group.donor_mass[3 * e + c], value * overlay.element_area[e], 1e-15);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bezel::detail
