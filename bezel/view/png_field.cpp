@@ -27,7 +27,7 @@ struct Sample {
 class Inverter {
  public:
   Inverter(int degree, std::span<const Vec2> control, double pixel)
-      : degree_(degree), control_(control), pixel_(pixel) {
+      : degree_(degree), control_(control) {
     for (int k = 0; k <= lattice; ++k)
       for (int j = 0; j <= lattice - k; ++j) {
         start_.push_back({static_cast<double>(lattice - j - k) / lattice,
@@ -88,7 +88,6 @@ class Inverter {
 
   int degree_;
   std::span<const Vec2> control_;
-  double pixel_;
   bool tiny_ = false;
   std::vector<Lambda> start_;
   std::vector<Vec2> place_;
