@@ -11,33 +11,11 @@
 
 #include "bezel/field/field.hpp"
 #include "bezel/numeric/quadrature.hpp"
+#include "bezel/transfer/group.hpp"
 #include "bezel/transfer/overlay.hpp"
 #include "bezel/transfer/transfer.hpp"
 
 namespace bezel::detail {
-
-/// The components of all donor fields that share a donor space and go to the same target space.
-struct Group {
-  Group(const OverlayMesh& donor, const OverlayMesh& target, std::span<const Field* const> fields,
-        std::shared_ptr<const Space> target_space);
-
-  std::shared_ptr<const Space> donor_space, target_space;
-  int components = 0;
-  bool donor_mapped, target_mapped;  ///< polynomial in reference coordinates of a curved element
-  std::vector<Frame>
-      donor_frame;  ///< affine triangles of the donor's polynomials that are not mapped
-  /// Affine triangles on which the target's polynomials are computed: the triangle of the element's
-  /// corners where it fits the element (mass matrices are well conditioned there), else the space's
-  /// own frame.
-  std::vector<Frame> target_frame;
-  std::vector<double>
-      scaled;  ///< donor coefficients times multinomials, per element [component][n]
-  std::vector<double> donor_mass;  ///< per element [component]
-  std::vector<double> out;         ///< target coefficients, per element [n][component]
-
-  std::span<const double> donor_scaled(std::int32_t e) const;
-  std::span<double> target_out(std::int32_t e);
-};
 
 /// What one target element received.
 struct ElementOutcome {
@@ -83,7 +61,7 @@ class ElementTransfer {
   };
 
   const IntervalRule& rule(int points);
-  void boundary_nodes(std::span<const Segment> run, bool use_source, int degree);
+  void boundary_nodes(std::span<const Segment> run, int degree);
   struct RunShape {
     Vec2 centre;  // mean of the corners
     double area;
@@ -124,6 +102,10 @@ class ElementTransfer {
                                     std::array<double, 3>& warm, bool& have_warm) const;
   void reference_nodes(const OverlayMesh& mesh, std::int32_t element, std::span<const Segment> run,
                        bool source, int degree);
+  std::array<double, 2> reference_centre() const;  // mean of the reference nodes
+  template <class Visit>
+  void reference_fan(const OverlayMesh& mesh, std::int32_t element,
+                     const std::array<double, 2>& centre, int degree, const Visit& visit);
 
   const OverlayMesh& donor_;
   const OverlayMesh& target_;

@@ -72,26 +72,5 @@ TEST(ElementTransfer, APieceGivenToTheWrongElementIsNoticed) {
   EXPECT_GT(outcome.max_joint_gap, 1e-3);
 }
 
-TEST(Group, HoldsTheComponentsOfItsFields) {
-  const auto mesh = test::grid_mesh(2, 2, 1.0, test::bend(0.1, 0.1));
-  const OverlayMesh overlay(mesh, "donor", 1);
-  const auto space = Space::discontinuous(mesh, 1);
-  const std::vector<Formula> velocity = {Formula("2"), Formula("3")};
-  const Formula one("1");
-  const Field a = project("velocity", space, velocity);
-  const Field b = project("one", space, {&one, 1});
-  const std::vector<const Field*> fields = {&a, &b};
-  const Group group(overlay, overlay, fields, space);
-  EXPECT_EQ(group.components, 3);
-  EXPECT_TRUE(group.donor_mapped);
-  EXPECT_EQ(group.donor_scaled(0).size(), 9U);
-  for (std::size_t e = 0; e < mesh->element_count(); ++e) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double value = c == 0 ? 2.0 : c == 1 ? 3.0 : 1.0;
-      EXPECT_NEAR(group.donor_mass[3 * e + c], value * overlay.element_area[e], 1e-15);
-    }
-  }
-}
-
 }  // namespace
 }  // namespace bezel::detail

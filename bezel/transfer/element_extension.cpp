@@ -1,0 +1,97 @@
+// The part of a target element that no donor covers.
+
+#include <algorithm>
+#include <limits>
+
+#include "bezel/transfer/accumulate.hpp"
+#include "bezel/transfer/element_kernel.hpp"
+
+namespace bezel::detail {
+
+void ElementTransfer::add_extension(const Group& g, std::int32_t t, std::span<const Segment> run,
+                                    double area, const Vec2& centre, Accumulators& sums,
+                                    std::span<double> made) {
+  // The donors along the hole in the cover; without any, the one nearest to the piece.
+  struct Neighbour {
+    std::int32_t donor;
+    Vec2 a, b;
+  };
+  std::vector<Neighbour> neighbours;
+  for (const Segment& segment : run) {
+    if (segment.source.edge < 0) continue;
+    const auto& sides = donor_.edge_sides[static_cast<std::size_t>(segment.source.edge)];
+    const std::int32_t d = sides[0] != exterior ? sides[0] : sides[1];
+    Neighbour n{d, {}, {}};
+    Vec2 unused;
+    curve_point(donor_.edge(segment.source.edge), segment.source.from, n.a, unused);
+    curve_point(donor_.edge(segment.source.edge), segment.source.to, n.b, unused);
+    neighbours.push_back(n);
+  }
+  if (neighbours.empty()) neighbours.push_back({search_.nearest(centre), centre, centre});
+  const auto nearest = [&](const Vec2& x) {
+    std::int32_t best = neighbours.front().donor;
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const Neighbour& n : neighbours) {
+      const Vec2 d = n.b - n.a;
+      const double length_squared = dot(d, d);
+      const double s =
+          length_squared > 0 ? std::clamp(dot(x - n.a, d) / length_squared, 0.0, 1.0) : 0.0;
+      const Vec2 r = x - (n.a + d * s);
+      const double distance_squared = dot(r, r);
+      if (distance_squared < smallest) {
+        smallest = distance_squared;
+        best = n.donor;
+      }
+    }
+    return best;
+  };
+
+  const int pt = g.target_space->degree(ElementId(t));
+  const auto nc = static_cast<std::size_t>(g.components);
+  std::vector<double> value(nc);
+  std::vector<double> first(nc);
+  std::vector<double> difference(nc, 0.0);
+  std::vector<double> phi(static_cast<std::size_t>(bernstein::triangle_size(pt)));
+  bool have_first = false;
+  const auto factors = multinomials(pt);
+  const auto add = [&](double w, const std::array<double, 2>& place, const Vec2& x) {
+    const std::int32_t d = nearest(x);
+    std::array<double, 3> warm{};
+    bool have_warm = false;
+    const auto q = donor_place(g, d, x, warm, have_warm);
+    evaluate_scaled(g.donor_space->degree(ElementId(d)), g.components, g.donor_scaled(d).data(),
+                    q[0], q[1], value.data());
+    if (!have_first) first = value;
+    have_first = true;
+    basis_at(pt, place[0], place[1], phi.data());
+    for (std::size_t n = 0; n < phi.size(); ++n) {
+      const double weighted = w * phi[n] / factors[n];
+      sums.basis[n] += weighted;
+      for (std::size_t c = 0; c < nc; ++c) sums.product[n * nc + c] += weighted * value[c];
+    }
+    for (std::size_t c = 0; c < nc; ++c) difference[c] += w * (value[c] - first[c]);
+  };
+  const int pd = g.donor_space->highest_degree();
+  if (g.target_mapped) {
+    const int degree = pt + 2 * (target_.degree - 1) + pd + inexact_extra;
+    reference_nodes(target_, t, run, false, degree);
+    reference_fan(
+        target_, t, reference_centre(), degree,
+        [&](double w, const std::array<double, 2>& q, const MapPoint& map) { add(w, q, map.x); });
+  } else {
+    const int degree = pt + pd;
+    boundary_nodes(run, degree);
+    const IntervalRule& radial = rule((degree + 3) / 2);
+    reserve_points(nodes_.size() * radial.node.size());
+    for (const Node& node : nodes_) {
+      const double kappa = cross(node.x - centre, node.dx);
+      for (std::size_t i = 0; i < radial.node.size(); ++i) {
+        const Vec2 x = centre + (node.x - centre) * radial.node[i];
+        add(kappa * radial.weight[i] * radial.node[i], target_place(g, t, x), x);
+      }
+    }
+  }
+  for (std::size_t c = 0; c < nc; ++c) made[c] = first[c] * area + difference[c];
+}
+
+}  // namespace bezel::detail

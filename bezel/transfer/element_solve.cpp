@@ -1,0 +1,192 @@
+// Mass matrices of target elements and the solution on one element.
+
+#include <algorithm>
+#include <cmath>
+
+#include "bezel/base/error.hpp"
+#include "bezel/transfer/accumulate.hpp"
+#include "bezel/transfer/element_kernel.hpp"
+
+namespace bezel::detail {
+namespace {
+
+/// A positive rule on the reference triangle of any degree.
+TriangleRule any_triangle_rule(int degree) {
+  if (degree <= 80) return triangle_rule(degree);
+  const IntervalRule line = gauss_legendre((degree + 3) / 2);
+  TriangleRule rule;
+  for (std::size_t i = 0; i < line.node.size(); ++i) {
+    for (std::size_t j = 0; j < line.node.size(); ++j) {
+      const double u = line.node[i];
+      const double v = (1.0 - u) * line.node[j];
+      rule.lambda.push_back({1.0 - u - v, u, v});
+      rule.weight.push_back(line.weight[i] * line.weight[j] * (1.0 - u));
+    }
+  }
+  return rule;
+}
+
+}  // namespace
+
+const ElementTransfer::MassRule& ElementTransfer::mass_rule(int degree) {
+  for (const MassRule& known : mass_rules_) {
+    if (known.degree == degree) return known;
+  }
+  const TriangleRule points = any_triangle_rule(degree);
+  const int g = target_.degree;
+  MassRule made{degree, {}, {}, {}};
+  std::vector<double> lower(static_cast<std::size_t>(bernstein::triangle_size(g - 1)));
+  std::vector<double> value(target_.element_size);
+  for (std::size_t q = 0; q < points.weight.size(); ++q) {
+    const auto& l = points.lambda[q];
+    made.place.push_back({l[1], l[2]});
+    made.weight.push_back(points.weight[q]);
+    basis_at(g, l[1], l[2], value.data());
+    basis_at(g - 1, l[1], l[2], lower.data());
+    // d/du B_ijk = g (B_{i,j-1,k} - B_{i-1,j,k}), both of degree g-1; the same for v with k.
+    int n = 0;
+    for (int k = 0; k <= g; ++k) {
+      for (int j = 0; j <= g - k; ++j, ++n) {
+        const auto at = [&](int jj, int kk) {
+          return jj < 0 || kk < 0 || jj + kk > g - 1
+                     ? 0.0
+                     : lower[static_cast<std::size_t>(bernstein::triangle_index(g - 1, jj, kk))];
+        };
+        const double first = at(j, k);
+        made.map.push_back({value[static_cast<std::size_t>(n)], g * (at(j - 1, k) - first),
+                            g * (at(j, k - 1) - first)});
+      }
+    }
+  }
+  mass_rules_.push_back(std::move(made));
+  return mass_rules_.back();
+}
+
+bool ElementTransfer::cholesky(std::size_t n, std::vector<double>& lower) {
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t i = j; i < n; ++i) {
+      double sum = lower[i * n + j];
+      for (std::size_t k = 0; k < j; ++k) sum -= lower[i * n + k] * lower[j * n + k];
+      if (i == j) {
+        if (!(sum > 0.0)) return false;
+        lower[j * n + j] = std::sqrt(sum);
+      } else {
+        lower[i * n + j] = sum / lower[j * n + j];
+      }
+    }
+  }
+  return true;
+}
+
+const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int32_t t) {
+  const int p = g.target_space->degree(ElementId(t));
+  const int gd = target_.degree;
+  const auto n = static_cast<std::size_t>(bernstein::triangle_size(p));
+  Factor& f = factor_;
+  if (gd == 1) {
+    // A straight triangle's own barycentrics: one matrix for all, times twice the area.
+    if (reference_degree_ != p) {
+      reference_lower_ = bernstein::mass_matrix(p);
+      cholesky(n, reference_lower_);
+      reference_degree_ = p;
+    }
+    const double area = target_.element_area[static_cast<std::size_t>(t)];
+    const double scale = std::sqrt(2.0 * area);
+    f.lower.resize(n * n);
+    for (std::size_t i = 0; i < n * n; ++i) f.lower[i] = reference_lower_[i] * scale;
+    f.integrals.assign(n, area / static_cast<double>(n));
+    return f;
+  }
+  const int degree = g.target_mapped ? 2 * p + 2 * (gd - 1) : 2 * p * gd + 2 * (gd - 1);
+  const MassRule& points = mass_rule(degree);
+  f.lower.assign(n * n, 0.0);
+  f.integrals.assign(n, 0.0);
+  std::vector<double>& phi = scratch_;
+  phi.resize(n);
+  const auto control = target_.element(t);
+  for (std::size_t q = 0; q < points.weight.size(); ++q) {
+    const std::array<double, 3>* map = points.map.data() + q * target_.element_size;
+    Vec2 x;
+    Vec2 du;
+    Vec2 dv;
+    for (std::size_t i = 0; i < target_.element_size; ++i) {
+      x += control[i] * map[i][0];
+      du += control[i] * map[i][1];
+      dv += control[i] * map[i][2];
+    }
+    const auto place = g.target_mapped ? points.place[q] : target_place(g, t, x);
+    basis_at(p, place[0], place[1], phi.data());
+    const double w = points.weight[q] * cross(du, dv);
+    for (std::size_t i = 0; i < n; ++i) {
+      const double wi = w * phi[i];
+      f.integrals[i] += wi;
+      for (std::size_t j = 0; j <= i; ++j) f.lower[i * n + j] += wi * phi[j];
+    }
+  }
+  if (!cholesky(n, f.lower)) {
+    throw NumericsError("target triangle " + std::to_string(t) +
+                        ": its mass matrix is singular in double precision (degree " +
+                        std::to_string(p) + " on a degenerate element)");
+  }
+  return f;
+}
+
+void ElementTransfer::finish(Group& g, std::int32_t t, Accumulators& sums,
+                             std::span<const double> mass, double area, ElementOutcome& outcome) {
+  const int p = g.target_space->degree(ElementId(t));
+  const auto n = static_cast<std::size_t>(bernstein::triangle_size(p));
+  const auto nc = static_cast<std::size_t>(g.components);
+  const double own_area = target_.element_area[static_cast<std::size_t>(t)];
+  const bool full = std::abs(area - own_area) <= 1e-9 * own_area;
+  const Factor& f = factor(g, t);
+  const auto factors = multinomials(p);
+  const std::span<double> result = g.target_out(t);
+  std::vector<double>& rhs = scratch_;
+  std::array<Lambda, 3> to_frame{};  // the space's frame seen from the triangle computed on
+  if (g.target_space->basis() == Basis::physical) {
+    const auto corners = g.target_space->frame(ElementId(t)).corners();
+    for (std::size_t k = 0; k < 3; ++k) {
+      to_frame[k] = g.target_frame[static_cast<std::size_t>(t)].lambda(corners[k]);
+    }
+  }
+  for (std::size_t c = 0; c < nc; ++c) {
+    rhs.assign(n, 0.0);
+    // Around the element's mean: what remains is small, so a constant comes back constant whatever
+    // the rule.
+    const double mean = full ? mass[c] / area : 0.0;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      rhs[i] = (sums.product[i * nc + c] - mean * sums.basis[i]) * factors[i];
+      sum += rhs[i];
+    }
+    const double excess = (mass[c] - mean * own_area) - sum;
+    for (std::size_t i = 0; i < n; ++i) rhs[i] += excess * f.integrals[i] / own_area;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t k = 0; k < i; ++k) rhs[i] -= f.lower[i * n + k] * rhs[k];
+      rhs[i] /= f.lower[i * n + i];
+    }
+    for (std::size_t i = n; i-- > 0;) {
+      for (std::size_t k = i + 1; k < n; ++k) rhs[i] -= f.lower[k * n + i] * rhs[k];
+      rhs[i] /= f.lower[i * n + i];
+    }
+    // The constant part of what rounding left over.
+    for (int sweep = 0; sweep < 2; ++sweep) {
+      double got = 0.0;
+      for (std::size_t i = 0; i < n; ++i) got += (rhs[i] + mean) * f.integrals[i];
+      const double missing = mass[c] - got;
+      if (sweep == 1) {
+        outcome.max_mass_defect = std::max(outcome.max_mass_defect, std::abs(missing));
+        break;
+      }
+      for (std::size_t i = 0; i < n; ++i) rhs[i] += missing / own_area;
+    }
+    for (std::size_t i = 0; i < n; ++i) rhs[i] += mean;
+    if (g.target_space->basis() == Basis::physical) {
+      const auto own = bernstein::specialize<double>(p, rhs, to_frame);
+      std::copy(own.begin(), own.end(), rhs.begin());
+    }
+    for (std::size_t i = 0; i < n; ++i) result[i * nc + c] = rhs[i];
+  }
+}
+
+}  // namespace bezel::detail

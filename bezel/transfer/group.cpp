@@ -1,0 +1,91 @@
+#include "bezel/transfer/group.hpp"
+
+#include "bezel/transfer/accumulate.hpp"
+
+namespace bezel::detail {
+namespace {
+
+/// The triangle of the corners serves as a frame when it has at least this fraction of the
+/// element's area.
+constexpr double fitting_corners = 0.5;
+
+}  // namespace
+
+Frame affine_frame(const std::array<Vec2, 3>& p) {
+  Frame frame;
+  const Vec2 a = p[1] - p[0];
+  const Vec2 b = p[2] - p[0];
+  const double det = cross(a, b);
+  frame.gradient[1] = Vec2{{b[1] / det, -b[0] / det}};
+  frame.gradient[2] = Vec2{{-a[1] / det, a[0] / det}};
+  frame.gradient[0] = -(frame.gradient[1] + frame.gradient[2]);
+  frame.centre = p[0] + (a + b) * (1.0 / 3.0);
+  return frame;
+}
+
+Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
+             std::span<const Field* const> fields, std::shared_ptr<const Space> target_space_in)
+    : donor_space(fields.front()->space_ptr()),
+      target_space(std::move(target_space_in)),
+      donor_mapped(donor_space->basis() == Basis::reference && donor.degree > 1),
+      target_mapped(target_space->basis() == Basis::reference && target.degree > 1) {
+  for (const Field* f : fields) components += f->components();
+  if (!donor_mapped) {
+    donor_frame.resize(donor.element_count());
+    for (std::size_t e = 0; e < donor_frame.size(); ++e) {
+      donor_frame[e] = donor_space->basis() == Basis::physical
+                           ? donor_space->frame(ElementId(e))
+                           : affine_frame(donor.corners(static_cast<std::int32_t>(e)));
+    }
+  }
+  if (!target_mapped) {
+    target_frame.resize(target.element_count());
+    for (std::size_t e = 0; e < target_frame.size(); ++e) {
+      const auto corners = target.corners(static_cast<std::int32_t>(e));
+      const double corner_area = 0.5 * cross(corners[1] - corners[0], corners[2] - corners[0]);
+      const bool fits = corner_area >= fitting_corners * target.element_area[e];
+      target_frame[e] = target_space->basis() == Basis::reference || fits
+                            ? affine_frame(corners)
+                            : target_space->frame(ElementId(e));
+    }
+  }
+
+  const std::size_t elements = donor.element_count();
+  const auto nc = static_cast<std::size_t>(components);
+  scaled.resize(donor_space->coefficient_count() * nc);
+  donor_mass.resize(elements * nc);
+  std::size_t c0 = 0;
+  for (const Field* f : fields) {
+    const auto own = static_cast<std::size_t>(f->components());
+    const std::vector<double> masses = element_integrals(*f);
+    for (std::size_t e = 0; e < elements; ++e) {
+      const auto coefficients = f->coefficients(ElementId(e));
+      const auto factors = multinomials(donor_space->degree(ElementId(e)));
+      double* place = scaled.data() + donor_space->offset(ElementId(e)) * nc;
+      for (std::size_t c = 0; c < own; ++c) {
+        for (std::size_t n = 0; n < factors.size(); ++n) {
+          place[(c0 + c) * factors.size() + n] = coefficients[n * own + c] * factors[n];
+        }
+        donor_mass[e * nc + c0 + c] = masses[e * own + c];
+      }
+    }
+    c0 += own;
+  }
+  out.resize(target_space->coefficient_count() * nc);
+}
+
+std::span<const double> Group::donor_scaled(std::int32_t e) const {
+  const ElementId id(e);
+  const auto nc = static_cast<std::size_t>(components);
+  const auto size = static_cast<std::size_t>(bernstein::triangle_size(donor_space->degree(id)));
+  return {scaled.data() + donor_space->offset(id) * nc, size * nc};
+}
+
+std::span<double> Group::target_out(std::int32_t e) {
+  const ElementId id(e);
+  const auto nc = static_cast<std::size_t>(components);
+  const auto size = static_cast<std::size_t>(bernstein::triangle_size(target_space->degree(id)));
+  return {out.data() + target_space->offset(id) * nc, size * nc};
+}
+
+}  // namespace bezel::detail

@@ -1,0 +1,41 @@
+#pragma once
+// Internal: donor fields that are integrated together, laid out for the sums.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "bezel/field/field.hpp"
+#include "bezel/transfer/overlay_mesh.hpp"
+
+namespace bezel::detail {
+
+/// The triangle itself as a frame: lambda_k are its barycentrics.
+Frame affine_frame(const std::array<Vec2, 3>& corners);
+
+/// The components of all donor fields that share a donor space and go to the same target space.
+struct Group {
+  Group(const OverlayMesh& donor, const OverlayMesh& target, std::span<const Field* const> fields,
+        std::shared_ptr<const Space> target_space);
+
+  std::shared_ptr<const Space> donor_space, target_space;
+  int components = 0;
+  bool donor_mapped, target_mapped;  ///< polynomial in reference coordinates of a curved element
+  std::vector<Frame>
+      donor_frame;  ///< affine triangles of the donor's polynomials that are not mapped
+  /// Affine triangles on which the target's polynomials are computed: the triangle of the element's
+  /// corners where it fits the element (mass matrices are well conditioned there), else the space's
+  /// own frame.
+  std::vector<Frame> target_frame;
+  std::vector<double>
+      scaled;  ///< donor coefficients times multinomials, per element [component][n]
+  std::vector<double> donor_mass;  ///< per element [component]
+  std::vector<double> out;         ///< target coefficients, per element [n][component]
+
+  std::span<const double> donor_scaled(std::int32_t e) const;
+  std::span<double> target_out(std::int32_t e);
+};
+
+}  // namespace bezel::detail
