@@ -110,18 +110,17 @@ int run(int argc, char** argv) {
 }  // namespace bezel::cli
 
 int main(int argc, char** argv) {
-  using namespace bezel;
   try {
-    return cli::run(argc, argv);
-  } catch (const InputError& error) {
-    return cli::fail(cli::bad_input, error.what());
-  } catch (const NumericsError& error) {
-    return cli::fail(cli::gave_up, error.what());
-  } catch (const Interrupted& error) {
-    return cli::fail(cli::interrupted, error.what());
+    return bezel::cli::run(argc, argv);
+  } catch (const bezel::InputError& error) {
+    return bezel::cli::fail(bezel::cli::bad_input, error.what());
+  } catch (const bezel::NumericsError& error) {
+    return bezel::cli::fail(bezel::cli::gave_up, error.what());
+  } catch (const bezel::Interrupted& error) {
+    return bezel::cli::fail(bezel::cli::interrupted, error.what());
   } catch (const std::bad_alloc&) {
-    return cli::fail(cli::gave_up, "out of memory");
+    return bezel::cli::fail(bezel::cli::gave_up, "out of memory");
   } catch (const std::exception& error) {
-    return cli::fail(cli::bug, error.what());
+    return bezel::cli::fail(bezel::cli::bug, error.what());
   }
 }

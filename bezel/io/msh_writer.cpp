@@ -442,7 +442,7 @@ class Writer {
 
   /// Writes the scheme of a degree once, before its first use.
   std::string scheme_for(int q) {
-    const std::string name = fmt::format("bezel nodes of degree {}", q);
+    std::string name = fmt::format("bezel nodes of degree {}", q);
     if (!schemes_.insert(q).second) return name;
     const InterpolationScheme scheme = nodal_scheme(q);
     out_ += fmt::format("$InterpolationScheme\n\"{}\"\n1\n3\n2\n", name);

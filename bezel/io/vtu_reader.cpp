@@ -144,7 +144,7 @@ class Reader {
     for (std::size_t i = 0; i < out.size(); ++i) {
       Stored stored;
       std::memcpy(&stored, bytes.data() + i * sizeof(Stored), sizeof(Stored));
-      out[i] = static_cast<Value>(stored);
+      out[i] = static_cast<Value>(stored);  // NOLINT(bugprone-signed-char-misuse): Int8 is a number
     }
   }
 
@@ -184,16 +184,26 @@ class Reader {
       fail_array(node, fmt::format("format '{}', expected 'ascii', 'binary' or 'appended'",
                                    shown(format)));
     std::string bytes = binary(node, format == "appended");
-    if (type == "Float64") convert<double>(node, std::move(bytes), a.reals);
-    if (type == "Float32") convert<float>(node, std::move(bytes), a.reals);
-    if (type == "Int8") convert<std::int8_t>(node, std::move(bytes), a.integers);
-    if (type == "UInt8") convert<std::uint8_t>(node, std::move(bytes), a.integers);
-    if (type == "Int16") convert<std::int16_t>(node, std::move(bytes), a.integers);
-    if (type == "UInt16") convert<std::uint16_t>(node, std::move(bytes), a.integers);
-    if (type == "Int32") convert<std::int32_t>(node, std::move(bytes), a.integers);
-    if (type == "UInt32") convert<std::uint32_t>(node, std::move(bytes), a.integers);
-    if (type == "Int64") convert<std::int64_t>(node, std::move(bytes), a.integers);
-    if (type == "UInt64") convert<std::uint64_t>(node, std::move(bytes), a.integers);
+    if (type == "Float64")
+      convert<double>(node, std::move(bytes), a.reals);
+    else if (type == "Float32")
+      convert<float>(node, std::move(bytes), a.reals);
+    else if (type == "Int8")
+      convert<std::int8_t>(node, std::move(bytes), a.integers);
+    else if (type == "UInt8")
+      convert<std::uint8_t>(node, std::move(bytes), a.integers);
+    else if (type == "Int16")
+      convert<std::int16_t>(node, std::move(bytes), a.integers);
+    else if (type == "UInt16")
+      convert<std::uint16_t>(node, std::move(bytes), a.integers);
+    else if (type == "Int32")
+      convert<std::int32_t>(node, std::move(bytes), a.integers);
+    else if (type == "UInt32")
+      convert<std::uint32_t>(node, std::move(bytes), a.integers);
+    else if (type == "Int64")
+      convert<std::int64_t>(node, std::move(bytes), a.integers);
+    else if (type == "UInt64")
+      convert<std::uint64_t>(node, std::move(bytes), a.integers);
     return a;
   }
 

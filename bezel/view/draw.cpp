@@ -290,7 +290,8 @@ void draw(const std::string& path, const std::vector<Panel>& panels, const DrawO
   const std::unique_ptr<Canvas> canvas = view::make_canvas(path, options.width, s.height);
   for (std::size_t p = 0; p < panels.size(); ++p) {
     const double column = static_cast<double>(p % static_cast<std::size_t>(s.columns));
-    const double row = static_cast<double>(p / static_cast<std::size_t>(s.columns));
+    const std::size_t row_number = p / static_cast<std::size_t>(s.columns);
+    const double row = static_cast<double>(row_number);
     Box2 box;
     box.include(
         Vec2{{s.margin + column * (s.panel_width + s.gap),
