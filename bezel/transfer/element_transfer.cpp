@@ -378,6 +378,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
     ++outcome.pairs;
   }
   outcome.partition_residual = std::abs(total - own_area) / own_area;
+  if (outcome.partition_residual > largest_joint_gap) outcome.inconsistent = true;
   const double integrated = outcome.covered_area + extended;
   const auto start = std::chrono::steady_clock::now();
   std::size_t c0 = 0;
