@@ -278,6 +278,7 @@ class Plot {
       widest = std::max(widest, view::text_width(series_[i].name, label_));
     }
     if (named.empty()) return;
+    widest *= 1.15;  // viewers of SVG may have a wider font
     const double row = 21.0 * unit_, sample = 34.0 * unit_, inset = 10.0 * unit_;
     const Vec2 size{
         {3.0 * inset + sample + widest, inset + row * static_cast<double>(named.size())}};

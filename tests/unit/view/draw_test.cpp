@@ -1,0 +1,160 @@
+#include "bezel/view/draw.hpp"
+
+#include <filesystem>
+#include <pugixml.hpp>
+
+#include "bezel/base/atomic_file.hpp"
+#include "image.hpp"
+#include "support/meshes.hpp"
+
+namespace bezel {
+namespace {
+
+using test::message_of;
+using test::scratch;
+
+Field linear(const std::shared_ptr<const TriangleMesh>& mesh) {
+  const Formula x("x");
+  return project("x", Space::discontinuous(mesh, 1, Basis::physical), {&x, 1});
+}
+
+Panel panel_of(const Field& field, bool lines) {
+  Layer layer;
+  layer.field = field;
+  layer.mesh_lines = lines;
+  return {{layer}, "title"};
+}
+
+TEST(Draw, PngShowsTheFieldsColoursInTheRightPlaces) {
+  const auto mesh = test::grid_mesh(4, 3, 1.0, test::bend(0.15, 0.12));
+  const std::string path = scratch("field.png");
+  DrawOptions options;
+  options.width = 500;
+  options.colour_bar = false;
+  draw(path, {panel_of(linear(mesh), false)}, options);
+  const test::Image image(path);
+  EXPECT_EQ(image.width, 500);
+  // The square's left and right ends in the middle row, found by colour.
+  const view::ColourMap map("viridis");
+  const int row = image.height * 11 / 20;
+  int left = 0;
+  while (left < 250 && image.at(left, row) == std::array<int, 3>{255, 255, 255}) ++left;
+  int right = 499;
+  while (right > 250 && image.at(right, row) == std::array<int, 3>{255, 255, 255}) --right;
+  ASSERT_GT(right - left, 300);
+  for (int x = left + 3; x < right - 3; ++x) {
+    const double t = (x + 0.5 - left) / (right + 1.0 - left);
+    EXPECT_LE(test::difference(image.at(x, row), map(t)), 4) << x;
+  }
+}
+
+TEST(Draw, SvgIsWellFormedAndCurved) {
+  const auto mesh = test::grid_mesh(2, 3, 1.0, test::bend(0.15, 0.12));
+  const std::string path = scratch("mesh.svg");
+  Layer layer;
+  layer.mesh = mesh;
+  draw(path, {{{layer}, "a < b"}});
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_file(path.c_str()));
+  const std::string text = read_file(path);
+  // Cubic sides are cubic path commands.
+  bool curved = false;
+  for (const auto& path_node : document.select_nodes("//path")) {
+    const std::string d = path_node.node().attribute("d").value();
+    curved = curved || d.find_first_of("Cc") != std::string::npos;
+  }
+  EXPECT_TRUE(curved);
+  EXPECT_NE(text.find("a &lt; b"), std::string::npos);
+}
+
+TEST(Draw, MeshLinesAreDrawn) {
+  const auto mesh = test::grid_mesh(1, 1, 1.0, test::same_place);
+  const std::string with = scratch("with.png");
+  const std::string without = scratch("without.png");
+  DrawOptions options;
+  options.width = 300;
+  draw(with, {panel_of(linear(mesh), true)}, options);
+  draw(without, {panel_of(linear(mesh), false)}, options);
+  const test::Image a(with);
+  const test::Image b(without);
+  ASSERT_EQ(a.bytes.size(), b.bytes.size());
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < a.bytes.size(); ++i) different += a.bytes[i] != b.bytes[i] ? 1U : 0U;
+  EXPECT_GT(different, 3U * 200U);            // about five lines of 200 pixels
+  EXPECT_LT(different, a.bytes.size() / 10);  // and nothing else
+}
+
+TEST(Draw, SameBytesTwice) {
+  const auto mesh = test::grid_mesh(3, 2, 1.0, test::bend(0.1, 0.1));
+  for (const char* name : {"same.png", "same.svg"}) {
+    const std::string path = scratch(name);
+    draw(path, {panel_of(linear(mesh), true)});
+    const std::string first = read_file(path);
+    draw(path, {panel_of(linear(mesh), true)});
+    EXPECT_EQ(first, read_file(path));
+  }
+}
+
+TEST(Draw, ConstantAndVectorFieldsAndSeveralPanels) {
+  const auto mesh = test::grid_mesh(1, 2, 1.0, test::bend(0.1, 0.1));
+  const Formula one("1");
+  const std::vector<Formula> velocity = {Formula("x"), Formula("y")};
+  Panel a = panel_of(project("one", Space::discontinuous(mesh, 0), {&one, 1}), true);
+  Panel b = panel_of(project("v", Space::discontinuous(mesh, 2), velocity), true);
+  b.layers[0].component = -1;
+  DrawOptions options;
+  options.columns = 1;
+  for (const char* name : {"panels.png", "panels.svg"}) {
+    draw(scratch(name), {a, b}, options);
+    EXPECT_GT(std::filesystem::file_size(scratch(name)), 500U);
+  }
+}
+
+TEST(Draw, ErrorsNameWhatIsWrongAndLeaveNoFile) {
+  const auto mesh = test::grid_mesh(1, 1, 1.0, test::same_place);
+  const Panel good = panel_of(linear(mesh), true);
+  const std::string path = scratch("bad.png");
+  std::filesystem::remove(path);
+  EXPECT_EQ(message_of([&] { draw(path, {}); }), "nothing to draw: 0 panels, expected at least 1");
+  EXPECT_EQ(message_of([&] { draw(path, {Panel{}}); }), "panel 1: 0 layers, expected at least 1");
+  EXPECT_EQ(message_of([&] {
+              draw(path, {Panel{{Layer{}}, ""}});
+            }),
+            "panel 1: layer 1: neither a mesh nor a field, expected one");
+  Panel component = good;
+  component.layers[0].component = 1;
+  EXPECT_EQ(message_of([&] { draw(path, {component}); }),
+            "panel 1: layer 1: component 1 of field \"x\", expected -1 to 0");
+  DrawOptions options;
+  options.colour_map = "jet";
+  EXPECT_EQ(message_of([&] { draw(path, {good}, options); }),
+            "unknown colour map \"jet\", expected viridis, cividis, coolwarm or grey");
+  options = {};
+  options.lo = 1.0;
+  options.hi = 0.0;
+  EXPECT_EQ(message_of([&] { draw(path, {good}, options); }),
+            "colour range 1.000000 to 0.000000, expected a lower end below the upper end");
+  EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_EQ(message_of([&] { draw("x.gif", {good}); }),
+            "x.gif: unknown extension \".gif\", expected .svg or .png");
+  EXPECT_EQ(message_of([&] { draw("/nowhere/x.png", {good}); }),
+            "/nowhere/x.png: cannot be written: no such directory");
+}
+
+TEST(Plot, DrawsSeriesOnLogarithmicAxes) {
+  PlotOptions options;
+  options.title = "error";
+  options.log_x = options.log_y = true;
+  const Series series{"ours", {0.1, 0.2, 0.4}, {1e-6, 1e-4, 1e-2}, false};
+  const std::string path = scratch("plot.svg");
+  plot(path, {series}, options);
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_file(path.c_str()));
+  EXPECT_NE(read_file(path).find(">ours<"), std::string::npos);
+  plot(scratch("plot.png"), {series}, options);
+  EXPECT_EQ(test::Image(scratch("plot.png")).width, 800);
+  EXPECT_EQ(message_of([&] { plot(path, {}); }), "nothing to plot: 0 series, expected at least 1");
+}
+
+}  // namespace
+}  // namespace bezel
