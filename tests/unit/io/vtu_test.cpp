@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <cstdint>
 
 #include "bezel/base/error.hpp"
 #include "bezel/io/vtu.hpp"
@@ -190,7 +191,8 @@ TEST(Base64, IsThatOfRfc4648) {
 
 TEST(ArrayBytes, RoundTripInEveryEncoding) {
   std::string bytes;
-  for (int i = 0; i < 300000; ++i) bytes += static_cast<char>(i * i >> 7);
+  for (int i = 0; i < 300000; ++i)
+    bytes += static_cast<char>(static_cast<std::int64_t>(i) * i >> 7);
   for (const bool zlib : {false, true}) {
     const files::VtuEncoding encoding{true, false, zlib};
     for (const std::size_t n :
