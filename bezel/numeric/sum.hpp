@@ -21,4 +21,22 @@ double sum(std::span<const double> values);
 /// @source    [ogita2005, algorithm 5.3]
 double dot(std::span<const double> a, std::span<const double> b);
 
+/// One error-free pass: p_j, p_{j-1} = two_sum(p_j, p_{j-1}) for j = 2..n, in place. The sum of the
+/// values stays exactly the same; the last becomes the rounded left-to-right sum.
+///
+/// @cost      6 (n - 1) flops
+/// @source    [ogita2005, algorithm 4.3]
+void vec_sum(std::span<double> values);
+
+/// Sum as if computed in K times the working precision and rounded once: K - 1 passes of vec_sum,
+/// then a plain sum.
+///
+/// @param K   1 <= K; 1 is the plain left-to-right sum
+/// @throws    InputError when K < 1
+/// @accuracy  |error| <= (u + 3 g(n-1)^2) |S| + g(2n-2)^K sum |values|, S the exact sum,
+///            g(k) = k u / (1 - k u), for 4 n u <= 1 (K = 1: g(n-1) sum |values|)
+/// @cost      (6K - 5) (n - 1) flops; allocates above 32 values
+/// @source    [ogita2005, algorithm 4.8, proposition 4.10]
+double sum_k(std::span<const double> values, int K);
+
 }  // namespace bezel

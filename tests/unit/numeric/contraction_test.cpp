@@ -25,17 +25,22 @@ TEST(Contraction, ProductPlusSumHasTwoRoundings) {
 }
 
 TEST(Contraction, LoopsAreNotFused) {
+  // Factors read twice: a compiler that sees x y - y x returns 0 without computing.
   volatile double source[8] = {1.1, -2.3, 3.7, 0.3, 1e-3, -7.9, 5.3, 0.7};
-  double x[8], y[8], out[8];
+  double x[8], y[8], z[8], w[8], out[8];
   for (int i = 0; i < 8; ++i) x[i] = source[i], y[i] = source[7 - i];
-  for (int i = 0; i < 8; ++i) out[i] = x[i] * y[i] - y[i] * x[i];
+  for (int i = 0; i < 8; ++i) z[i] = source[i], w[i] = source[7 - i];
+  for (int i = 0; i < 8; ++i) out[i] = x[i] * y[i] - z[i] * w[i];
   for (int i = 0; i < 8; ++i) EXPECT_EQ(out[i], 0.0) << i;
 }
 
 TEST(Contraction, SumsAreNotReassociated) {
-  volatile double big = 1e16, one = 1.0;
+  volatile double source_big = 1e16, source_one = 1.0;
+  const double big = source_big, one = source_one;  // so that a compiler may see equal terms
   EXPECT_EQ((one + big) - big, 0.0);
   EXPECT_EQ(one + (big - big), 1.0);
+  const double z = (one + big) - one;  // the heart of two_sum
+  EXPECT_EQ((one - ((one + big) - z)) + (big - z), 1.0);
   volatile double tenth = 0.1;
   double sum = 0.0;
   for (int i = 0; i < 10; ++i) sum += tenth;

@@ -46,4 +46,28 @@ TEST(Sum, DotOfDifferentLengthsIsAnInputError) {
                                       "found vectors of lengths 2 and 1, expected equal lengths"));
 }
 
+TEST(Sum, VecSumKeepsTheSumAndEndsInTheRoundedOne) {
+  std::vector<double> p{1.0, 0x1p-60, -1.0, 0x1p-70};
+  bezel::vec_sum(p);
+  EXPECT_EQ(p, (std::vector<double>{0x1p-60, 0.0, 0.0, 0x1p-70}));
+  std::vector<double> none;
+  bezel::vec_sum(none);
+  EXPECT_TRUE(none.empty());
+}
+
+TEST(Sum, KFoldSumSeesKTimesAsFar) {
+  // Each step of 2^60 down needs one more fold.
+  const std::vector<double> p{1.0, 0x1p-60, 0x1p-120, 0x1p-180, -0x1p-120, -0x1p-60, -1.0};
+  EXPECT_EQ(bezel::sum_k(p, 1), 0.0);
+  EXPECT_EQ(bezel::sum_k(p, 4), 0x1p-180);
+  EXPECT_EQ(bezel::sum_k(std::vector<double>{}, 3), 0.0);
+  EXPECT_EQ(bezel::sum_k(std::vector<double>{0.1}, 3), 0.1);
+  EXPECT_EQ(bezel::sum_k(std::vector<double>(100, 0.1), 2), 0.1 * 100);
+}
+
+TEST(Sum, KBelowOneIsAnInputError) {
+  EXPECT_THAT([] { bezel::sum_k(std::vector<double>{1.0}, 0); },
+              testing::ThrowsMessage<bezel::InputError>("found K = 0, expected at least 1"));
+}
+
 }  // namespace
