@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <type_traits>
 
 #include "bezel/base/error.hpp"
 #include "bezel/bernstein/index.hpp"
+#include "bezel/numeric/finite.hpp"
 #include "bezel/numeric/vec.hpp"
 
 namespace bezel::bernstein::checks {
@@ -37,6 +39,8 @@ inline void triangle_degree(int d) {
 
 template <class Value>
 void finite(std::span<const Value> values, const char* what) {
+  if constexpr (std::is_same_v<Value, double>)
+    if (values.size() >= 16 && all_finite(values)) return;
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!is_finite(values[i]))
       throw InputError(std::string(what) + " " + std::to_string(i) + " is not finite");
@@ -78,6 +82,14 @@ inline void reduction(int d, int by) {
 inline void elevation(int d, int by, int largest, const char* where) {
   if (by < 0) throw InputError("elevation by " + std::to_string(by) + ", expected at least 0");
   degree(by > largest ? by : d + by, largest, where);
+}
+
+/// Throws unless 0 <= tolerance and 0 <= most.
+inline void iteration(double tolerance, int most) {
+  if (!(tolerance >= 0.0))
+    throw InputError("tolerance " + std::to_string(tolerance) + ", expected at least 0");
+  if (most < 0)
+    throw InputError("at most " + std::to_string(most) + " iterations, expected at least 0");
 }
 
 inline void size(std::size_t found, std::size_t expected, const char* what) {

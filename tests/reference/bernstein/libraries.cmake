@@ -1,1 +1,3 @@
-target_link_libraries(${target} PRIVATE gmpxx gmp)
+target_link_libraries(${target} PRIVATE nlohmann_json::nlohmann_json hwy::hwy gmpxx gmp)
+target_compile_definitions(${target} PRIVATE
+  BEZEL_REFERENCE_DATA="${PROJECT_SOURCE_DIR}/tests/reference/data/compensated")

@@ -3,8 +3,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
-#include <hwy/targets.h>
 
 #include <cmath>
 #include <cstring>
@@ -15,31 +13,16 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/bernstein/triangle.hpp"
+#include "support/simd_targets.hpp"
 
 namespace {
 
 using namespace bezel::bernstein;
+using support::on_every_target;
 using Doubles = std::vector<double>;
 
 bool same_bits(const Doubles& a, const Doubles& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
-}
-
-// Runs check once per target that was compiled and that this machine supports.
-template <class Check>
-void on_every_target(const Check& check) {
-  int ran = 0;
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    check();
-    ++ran;
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  EXPECT_GE(ran, 1);
-  testing::Test::RecordProperty("targets", ran);
 }
 
 Doubles values(std::size_t n, std::mt19937_64& random) {
