@@ -126,22 +126,4 @@ struct Range {
 /// returned
 Range range(std::span<const double> b, double tol = 0.0);
 
-/// A root, or several that are closer together than can be told.
-struct Root {
-  double s;  ///< the root to within a unit in the last place or two, or the middle of a cluster
-  double lo, hi;  ///< interval known to hold the root(s)
-  bool multiple;  ///< the interval could not be shown to hold exactly one simple root
-};
-
-/// Roots in [0, 1] in ascending order; the coefficients are taken as exact.
-///
-/// Signs are decided in twice the precision with a running error bound, so every root of odd
-/// multiplicity is reported. A simple root is bracketed by doubles with certain, opposite signs, as
-/// a rule neighbours. A cluster is marked `multiple`: a root of higher multiplicity, or (rarely) a
-/// near miss of the axis that twice the precision cannot tell from one.
-///
-/// @throws    also InputError when p is zero everywhere
-/// @source    [lane1981] for subdivision by sign variations; docs/methods/bernstein.md
-std::vector<Root> roots(std::span<const double> b);
-
 }  // namespace bezel::bernstein

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "bezel/bernstein/roots.hpp"
 #include "bezel/bernstein/triangle.hpp"
 
 namespace {
