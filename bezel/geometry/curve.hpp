@@ -93,7 +93,9 @@ struct IntersectOptions {
 ///           curve folds back; what could not be decided within 20000 boxes, or where a curve is
 ///           singular (a cusp on the other curve), is in `unresolved` with the reason
 /// @throws   InputError for bad control points or a negative or infinite distance
-/// @accuracy crossings: parameters within 4 u condition; ends of an overlap inside the curves:
+/// @accuracy crossings: parameters within 4 u condition up to a condition of 2^20; beyond that the
+///           residuals are compensated: within 4 u up to a condition of 1/u or so, where it
+///           converges (as a rule; else 4 u condition). Ends of an overlap inside the curves:
 ///           where the distance passes tol, known to tol / 128 from a measured (not proven)
 ///           interpolation error
 /// @cost     quadratic mesh edges 0.05 us when apart, 0.2 us when crossing or identical; random

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "bezel/geometry/curve.hpp"
@@ -68,6 +69,9 @@ class IntersectSearch {
   enum class Newton { root, none, lost };
   /// Runs to the one root of a box that holds at most one; none: it lies outside.
   Newton newton(double& s, double& t, double s0, double s1, double t0, double t1) const;
+  /// Newton's method with compensated residuals inside the box; false, and nothing changed, when it
+  /// leaves the box or does not settle.
+  bool polish(double& s, double& t, double s0, double s1, double t0, double t1) const;
   template <int M, int N>
   void descend(const CurvePiece& a, const CurvePiece& b);
   template <int M, int N>
@@ -102,6 +106,7 @@ class IntersectSearch {
   int contact_count_ = 0;
   std::vector<ParallelBox> parallel_;
   std::vector<HalfEvent> halves_;
+  std::uint64_t polished_ = 0;  // bit i: crossing i is; beyond 64 they count as not polished
 };
 
 }  // namespace bezel::geometry_kernel
