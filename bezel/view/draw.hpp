@@ -45,12 +45,17 @@ struct Series {
   std::string name;
   std::vector<double> x, y;
   bool dashed = false;
+  bool scatter = false;     ///< markers only, small ones when there are many
+  std::string colour = {};  ///< "#rrggbb"; empty: the next of a palette
 };
 struct PlotOptions {
   std::string title, x_label, y_label;
   bool log_x = false, log_y = false;
   int width = 800, height = 560;
 };
+/// Draws series to a .svg or .png file (by extension), atomically.
+/// @throws InputError for an unknown extension or colour, sizes that differ, values that are not
+/// finite or, on a logarithmic axis, not above 0
 void plot(const std::string& path, const std::vector<Series>& series,
           const PlotOptions& options = {});
 

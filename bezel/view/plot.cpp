@@ -26,7 +26,8 @@ constexpr Colour major_grid{0.80, 0.80, 0.80, 1.0}, minor_grid{0.92, 0.92, 0.92,
 // yellow; black last.
 constexpr std::array<const char*, 7> palette{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                              "#e69f00", "#56b4e9", "#000000"};
-constexpr int most_markers = 40;  // points of a series beyond which it is a curve without markers
+constexpr int most_markers =
+    40;  // points beyond which a curve has no markers, a scatter small ones
 
 void check(const std::vector<Series>& series, const PlotOptions& options) {
   if (series.empty()) throw InputError("nothing to plot: 0 series, expected at least 1");
@@ -121,6 +122,7 @@ struct Look {
   Colour colour;
   Shape shape;
   bool markers;
+  double radius;  // of a marker, in units
 };
 
 class Plot {
@@ -146,9 +148,14 @@ class Plot {
     const double bottom = 34.0 * unit_ + (options.x_label.empty() ? 0.0 : 24.0 * unit_);
     frame_.include(Vec2{{std::min(left, 0.5 * options.width), top}});
     frame_.include(Vec2{{options.width - 22.0 * unit_, options.height - bottom}});
-    for (std::size_t i = 0; i < series.size(); ++i)
-      looks_.push_back({view::parse_colour(palette[i % palette.size()]), shapes[i % shapes.size()],
-                        !series[i].dashed && series[i].x.size() <= most_markers});
+    for (std::size_t i = 0; i < series.size(); ++i) {
+      const bool many = series[i].x.size() > most_markers;
+      const std::string colour =
+          series[i].colour.empty() ? palette[i % palette.size()] : series[i].colour;
+      looks_.push_back({view::parse_colour(colour), shapes[i % shapes.size()],
+                        series[i].scatter || (!series[i].dashed && !many),
+                        series[i].scatter && many ? 2.6 : 4.0});
+    }
   }
 
   void draw(Canvas& canvas) const {
@@ -261,9 +268,9 @@ class Plot {
       } else {
         line.line(points[k]);
       }
-      add_marker(markers, looks_[i].shape, points[k], 4.0 * unit_);
+      add_marker(markers, looks_[i].shape, points[k], looks_[i].radius * unit_);
     }
-    if (points.size() > 1) canvas.stroke(line, line_style(i));
+    if (points.size() > 1 && !series_[i].scatter) canvas.stroke(line, line_style(i));
     if (looks_[i].markers || points.size() == 1) canvas.fill(markers, looks_[i].colour);
   }
 
@@ -296,7 +303,7 @@ class Plot {
       Path line, marker;
       line.move(Vec2{{x, y}});
       line.line(Vec2{{x + sample, y}});
-      canvas.stroke(line, line_style(named[k]));
+      if (!series_[named[k]].scatter) canvas.stroke(line, line_style(named[k]));
       add_marker(marker, looks_[named[k]].shape, Vec2{{x + 0.5 * sample, y}}, 4.0 * unit_);
       if (looks_[named[k]].markers) canvas.fill(marker, looks_[named[k]].colour);
       canvas.text(Vec2{{x + sample + inset, y + 0.35 * label_.size}}, series_[named[k]].name,
@@ -327,7 +334,7 @@ class Plot {
         const std::vector<Vec2> p = points(i);
         for (std::size_t k = 0; k < p.size(); ++k) {
           if (box.contains(p[k])) hidden += 10.0;
-          if (k == 0) continue;
+          if (k == 0 || series_[i].scatter) continue;
           const int steps = std::clamp(static_cast<int>(norm(p[k] - p[k - 1]) / 4.0), 1, 1000);
           for (int q = 0; q < steps; ++q)
             if (box.contains(p[k - 1] + (static_cast<double>(q) / steps) * (p[k] - p[k - 1])))

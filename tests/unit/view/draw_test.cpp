@@ -156,5 +156,35 @@ TEST(Plot, DrawsSeriesOnLogarithmicAxes) {
   EXPECT_EQ(message_of([&] { plot(path, {}); }), "nothing to plot: 0 series, expected at least 1");
 }
 
+// How often a text stands in a file.
+std::size_t count_of(const std::string& path, const std::string& text) {
+  const std::string all = read_file(path);
+  std::size_t n = 0;
+  for (std::size_t at = all.find(text); at != std::string::npos; at = all.find(text, at + 1)) ++n;
+  return n;
+}
+
+TEST(Plot, ScatterHasMarkersAndNoLine) {
+  Series series{"", {}, {}, false};
+  for (int i = 0; i < 100; ++i) {
+    series.x.push_back(i);
+    series.y.push_back(i % 7);
+  }
+  series.colour = "#123456";
+  const std::string path = scratch("scatter.svg");
+  plot(path, {series});
+  EXPECT_EQ(count_of(path, "stroke=\"#123456\""), 1U);
+  EXPECT_EQ(count_of(path, "fill=\"#123456\""), 0U);  // a curve of many points has no markers
+  const auto curve_size = std::filesystem::file_size(path);
+  series.scatter = true;
+  plot(path, {series});
+  EXPECT_EQ(count_of(path, "stroke=\"#123456\""), 0U);
+  EXPECT_EQ(count_of(path, "fill=\"#123456\""), 1U);  // one path of 100 markers
+  EXPECT_GT(std::filesystem::file_size(path), curve_size + 100 * 20);
+  series.colour = "blue";
+  EXPECT_EQ(message_of([&] { plot(path, {series}); }),
+            "colour \"blue\" is not of the form \"#rrggbb\" with hexadecimal digits");
+}
+
 }  // namespace
 }  // namespace bezel
