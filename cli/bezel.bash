@@ -18,7 +18,9 @@ _bezel() {
   else
     case $previous in
       mesh) words='square rectangle disc annulus lshape' ;;
-      study) words='transfer' ;;
+      study) words='transfer compensated newton' ;;
+      --precision) words='1 2 3 4 certified' ;;
+      --newton) words='basic accurate full triple' ;;
       --basis) words='reference physical' ;;
       --continuity) words='dg cg' ;;
       --uncovered) words='error extend zero' ;;

@@ -33,6 +33,8 @@ void add_sample(CLI::App& app, Context& context);
 void add_transfer(CLI::App& app, Context& context);
 void add_error(CLI::App& app, Context& context);
 void add_view(CLI::App& app, Context& context);
+void add_eval(CLI::App& app, Context& context);
+void add_roots(CLI::App& app, Context& context);
 void add_study(CLI::App& app, Context& context);
 
 }  // namespace bezel::cli

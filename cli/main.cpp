@@ -89,6 +89,8 @@ int run(int argc, char** argv) {
   add_transfer(app, context);
   add_error(app, context);
   add_view(app, context);
+  add_eval(app, context);
+  add_roots(app, context);
   add_study(app, context);
 
   try {

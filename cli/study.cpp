@@ -13,6 +13,8 @@ struct StudyOptions {
 };
 
 int run(const StudyOptions& options, const Context& context) {
+  if (options.name == "compensated") return run_study_compensated(options.out, context.json);
+  if (options.name == "newton") return run_study_newton(options.out, context.json);
   return run_study_transfer(options.out, options.quick, context.json);
 }
 
@@ -25,14 +27,17 @@ void add_study(CLI::App& app, Context& context) {
                   "bezel study transfer --quick -o study", options, run);
   command
       ->add_option("NAME", options->name,
-                   "transfer: errors and orders of transfers from a square to a disc")
+                   "transfer: errors and orders of transfers from a square to a disc; compensated: "
+                   "polynomials evaluated near multiple roots; newton: ill-conditioned roots and "
+                   "intersections by Newton's method")
       ->required()
-      ->check(CLI::IsMember({"transfer"}))
+      ->check(CLI::IsMember({"transfer", "compensated", "newton"}))
       ->type_name("");
   command->add_option("-o,--output", options->out, "Folder for tables and plots")
       ->required()
       ->type_name("DIR");
-  command->add_flag("--quick", options->quick, "Fewer levels, within a minute");
+  command->add_flag("--quick", options->quick,
+                    "Fewer levels, within a minute (the others take a second)");
 }
 
 }  // namespace bezel::cli

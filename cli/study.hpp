@@ -12,4 +12,12 @@ namespace bezel::cli {
 /// @return the exit code
 int run_study_transfer(const std::string& out_dir, bool quick, bool json);
 
+/// The experiments of compensated evaluation [hermes2018, ch. 5]: figures 5.1, 5.2, 5.4, 5.6, 5.7,
+/// table 5.1, operation counts and multipliers. Output as above.
+int run_study_compensated(const std::string& out_dir, bool json);
+
+/// Newton's method with compensated values [hermes2018, ch. 6]: figure 6.1, roots, tangent and
+/// almost tangent intersections, the false start. Output as above.
+int run_study_newton(const std::string& out_dir, bool json);
+
 }  // namespace bezel::cli

@@ -22,4 +22,11 @@ expect "disc" mesh di
 expect "--uncovered" transfer a b --unc
 expect "error extend" transfer a b --uncovered e
 expect "--json" info --js
+expect "eval" ev
+expect "roots" ro
+expect "compensated" study c
+expect "newton" study n
+expect "certified" eval p.json --precision c
+expect "full" roots p.json --newton f
+expect "--max-iterations" roots --max
 exit $failed

@@ -10,6 +10,7 @@ A case is a transcript. It runs in an empty folder that holds a copy of tests/cl
     $full bezel info data/square.msh     the same with a standard output that is full
     2> error: data/none.msh: ...         a line of its standard error
     > ...                                a line of its standard output
+    < data/in.json                       the file it reads as its standard input
     exit 3                               its exit code; 0 when not given
     files a.msh b.vtu                    the files the folder holds afterwards, besides data
     json .fields[0].min == -1            a value in the standard output read as one JSON object
@@ -76,6 +77,7 @@ class Command:
         self.exit = 0
         self.out, self.err, self.checks = [], [], []
         self.loose_out = self.loose_err = False
+        self.input = os.devnull
 
 
 def parse(path):
@@ -100,6 +102,8 @@ def parse(path):
                 command.out.append(rest)
             elif kind == "2>":
                 command.err.append(rest)
+            elif kind == "<":
+                command.input = rest
             elif kind == "exit":
                 command.exit = int(rest)
             elif kind in ("json", "keys", "files", "same", "not-same", "contains"):
@@ -150,10 +154,11 @@ def run(command, bezel, folder):
     if words[0] != "bezel":
         raise Failure("commands start with 'bezel'")
     before = snapshot(folder)
-    with open("/dev/full", "wb") as full:
+    with open("/dev/full", "wb") as full, open(os.path.join(folder, command.input), "rb") as given:
         result = subprocess.run(
             [bezel] + words[1:],
             cwd=folder,
+            stdin=given,
             stdout=full if command.full else subprocess.PIPE,
             stderr=subprocess.PIPE,
             timeout=300,
