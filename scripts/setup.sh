@@ -11,7 +11,7 @@ set -euo pipefail
 build=(g++ cmake ninja-build pkg-config libeigen3-dev libhwy-dev libfmt-dev libcli11-dev nlohmann-json3-dev
   libpugixml-dev libtbb-dev libpng-dev zlib1g-dev)
 test=(python3 libgtest-dev libgmock-dev librapidcheck-dev libgmp-dev libmpfr-dev)
-ci=(git libbenchmark-dev clang-14 clang-format-14 clang-tidy-14 ccache)
+ci=(git libbenchmark-dev libqd-dev clang-14 clang-format-14 clang-tidy-14 ccache)
 
 case "${1:-build}" in
   build) wanted=("${build[@]}") ;;
