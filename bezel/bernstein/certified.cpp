@@ -3,10 +3,10 @@
 #include "bezel/bernstein/certified.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "bezel/bernstein/certified_batch.hpp"
@@ -55,9 +55,8 @@ class Evaluation {
     // what underflow_bound covers.
     exponent_ = std::ilogb(magnitude);
     if (exponent_ >= -30 && exponent_ < 30) exponent_ = 0;
-    scaled_.assign(b_.begin(), b_.end());
-    if (exponent_ != 0)
-      for (double& c : scaled_) c = std::ldexp(c, -exponent_);
+    for (std::size_t j = 0; j < b_.size(); ++j)
+      scaled_[j] = exponent_ == 0 ? b_[j] : std::ldexp(b_[j], -exponent_);
 
     std::vector<std::size_t> left = doubled();
     if (!left.empty()) left = reflected(left);
@@ -87,26 +86,32 @@ class Evaluation {
   }
 
   std::vector<std::size_t> doubled() {
-    const std::size_t n = s_.size();
-    std::vector<std::size_t> failed(n);
     const DoubledForm form = doubled_form(d_, scaled_.data(), false);
     s_max_ = form.s_max;
-    failed.resize(evaluate_doubled(form, s_.data(), n, value_.data(),
-                                   bound_.empty() ? nullptr : bound_.data(), failed.data()));
     if (!certificate_.empty())
       std::fill(certificate_.begin(), certificate_.end(), Certificate::doubled);
-    if (exponent_ == 0) return failed;
+    constexpr std::size_t block = 512;
+    std::array<std::size_t, block> failed;
+    std::vector<std::size_t> left;
+    for (std::size_t first = 0; first < s_.size(); first += block) {
+      const std::size_t here = std::min(block, s_.size() - first);
+      const std::size_t failures =
+          evaluate_doubled(form, s_.data() + first, here, value_.data() + first,
+                           bound_.empty() ? nullptr : bound_.data() + first, failed.data());
+      for (std::size_t i = 0; i < failures; ++i) left.push_back(first + failed[i]);
+    }
+    if (exponent_ == 0) return left;
     // Rarely needed: scale back, point by point.
     std::size_t next = 0;
-    for (std::size_t q = 0; q < n; ++q) {
-      if (next < failed.size() && failed[next] == q) {
+    for (std::size_t q = 0; q < s_.size(); ++q) {
+      if (next < left.size() && left[next] == q) {
         ++next;
       } else if (!put_scaled(q, value_[q], bound_.empty() ? 0.0 : bound_[q],
                              Certificate::doubled)) {
         exact_only_.push_back(q);
       }
     }
-    return failed;
+    return left;
   }
 
   /// End points are exact, points outside [0, 1] go to exact arithmetic, and what failed only
@@ -147,7 +152,7 @@ class Evaluation {
     const std::size_t n = points.size();
     std::vector<double> s, levels(n * static_cast<std::size_t>(K)), absolute(n), magnitudes;
     for (const std::size_t q : points) s.push_back(s_[q]);
-    for (const double c : scaled_) magnitudes.push_back(std::fabs(c));
+    for (std::size_t j = 0; j < b_.size(); ++j) magnitudes.push_back(std::fabs(scaled_[j]));
     compensated_point_levels(d_, scaled_.data(), s.data(), n, K, levels.data());
     evaluate(magnitudes, s, absolute);
     double factor = error_multiplier(d_, K) * (1.0 + 0x1p-30);
@@ -185,7 +190,7 @@ class Evaluation {
   std::span<Certificate> certificate_;
   int exponent_ = 0;
   double s_max_ = 1.0;
-  std::vector<double> scaled_;
+  std::array<double, max_interval_degree + 1> scaled_{};
   std::vector<std::size_t> exact_only_;
 };
 

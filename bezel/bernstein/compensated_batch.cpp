@@ -167,6 +167,58 @@ HWY_INLINE V sum_levels(const V* level) {
   return plain_sum<K>(p[0], p);
 }
 
+/// One point: the lanes are the coefficients of a row, which do not depend on each other. `level`
+/// gets the K levels in its first lanes. Lanes beyond a row hold garbage that no other lane reads.
+template <int K>
+HWY_INLINE void sweep_rows(int d, const double* HWY_RESTRICT b, double s, V* level) {
+  constexpr std::size_t room = max_interval_degree + 1 + 2 * max_lane_count;
+  const std::size_t lanes = lane_count();
+  Parameter x;
+  x.s = set(s);
+  V rho;
+  x.r = two_sum(set(1.0), neg(x.s), rho);
+  x.rho = rho;
+  HWY_ALIGN double c[room], w[at(K) * room];
+  const auto n = at(d);
+  std::copy(b, b + n + 1, c);
+  std::fill(c + n + 1, c + n + 1 + lanes, 0.0);
+  const auto row = [&](int f) { return w + at(f) * room; };
+  for (std::size_t j = 0; j < n; j += lanes) {
+    V e[error_room(K)];
+    const V low = load_unaligned(c + j);
+    level[0] = base_level<K>(low, load_unaligned(c + j + 1), e, x);
+    first_levels<1, K, 3>(e, low, level, x);
+    if (n > lanes)
+      for (int f = 0; f < K; ++f) {
+        store_unaligned(level[f], row(f) + j);
+        row(f)[j + lanes] = 0.0;  // read as the last lane's neighbour
+      }
+  }
+  std::size_t m = n - 1;
+  V high[K];
+  const auto update = [&] {
+    V e[error_room(K)];
+    const V before = level[0];
+    level[0] = base_level<K>(before, high[0], e, x);
+    update_levels<1, K, 3>(e, before, level, high, x);
+  };
+  for (; m + 1 > lanes; --m)
+    for (std::size_t j = 0; j < m; j += lanes) {
+      for (int f = 0; f < K; ++f) {
+        level[f] = load_unaligned(row(f) + j);
+        high[f] = load_unaligned(row(f) + j + 1);
+      }
+      update();
+      for (int f = 0; f < K; ++f) store_unaligned(level[f], row(f) + j);
+    }
+  if (n > lanes)
+    for (int f = 0; f < K; ++f) level[f] = load_unaligned(row(f));
+  for (; m > 0; --m) {
+    for (int f = 0; f < K; ++f) high[f] = shift_down(level[f]);
+    update();
+  }
+}
+
 constexpr int group = 4;  // vectors in turn
 
 template <int K>
@@ -191,8 +243,12 @@ void run_fold(int d, const double* HWY_RESTRICT b, const double* HWY_RESTRICT s,
     HWY_ALIGN double few[max_lane_count];
     for (std::size_t i = 0; i < lanes; ++i) few[i] = s[q + std::min(i, here - 1)];
     V result[K];
-    const V parameter = load(few);
-    sweep<K, 1>(d, b, &parameter, work, result);
+    if (here == 1 && lanes > 1 && d > 1) {
+      sweep_rows<K>(d, b, s[q], result);
+    } else {
+      const V parameter = load(few);
+      sweep<K, 1>(d, b, &parameter, work, result);
+    }
     if (out != nullptr) {
       store(sum_levels<K, 1>(result), few);
       std::copy(few, few + here, out + q);

@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include "hwy/highway.h"
 
@@ -101,6 +102,16 @@ HWY_INLINE bool all(Mask m) {
 HWY_INLINE V to_ones(Mask m) {
   return hn::IfThenElseZero(m, set(1.0));
 }
+/// Lane i gets what was in lane i + 1; the last lane keeps its own.
+HWY_INLINE V shift_down(V x) {
+  HWY_ALIGN std::int64_t from[max_lane_count];
+  for (std::size_t i = 0; i < max_lane_count; ++i)
+    from[i] = static_cast<std::int64_t>(i + 1 < lane_count() ? i + 1 : i);
+  return hn::TableLookupLanes(x, hn::SetTableIndices(Lanes(), from));
+}
+HWY_INLINE double first_lane(V x) {
+  return hn::GetLane(x);
+}
 #else
 using V = double;
 using Mask = bool;
@@ -167,6 +178,12 @@ HWY_INLINE bool all(Mask m) {
 }
 HWY_INLINE V to_ones(Mask m) {
   return m ? 1.0 : 0.0;
+}
+HWY_INLINE V shift_down(V x) {
+  return x;
+}
+HWY_INLINE double first_lane(V x) {
+  return x;
 }
 #endif
 
