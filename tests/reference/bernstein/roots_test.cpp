@@ -116,7 +116,8 @@ TEST(RootsReference, SmallIntegerCoefficients) {
     const int d = 1 + static_cast<int>(random() % 12), range = 1 + static_cast<int>(random() % 4);
     Doubles b;
     for (int j = 0; j <= d; ++j)
-      b.push_back(static_cast<double>(static_cast<int>(random() % (2 * range + 1)) - range));
+      b.push_back(static_cast<double>(
+          static_cast<int>(random() % (2U * static_cast<unsigned>(range) + 1U)) - range));
     if (exact::max_abs(b) == 0.0) continue;
     // Squares and cubes of them.
     const Doubles factor = b;
