@@ -287,11 +287,14 @@ void accumulate_products(int da, const A* a, int db, const B* b, Out* out, const
     for (int k = 0; k <= da - l; ++k)
       for (int j = 0; j <= da - l - k; ++j, ++a) {
         const B* s = b;
-        for (int n = 0; n <= db; ++n)
+        for (int n = 0; n <= db; ++n) {
+          const int rest = d - l - n;  // layer l + n is a triangle of this degree
+          Out* layer = out + (tetrahedron_size(d) - tetrahedron_size(rest));
           for (int q = 0; q <= db - n; ++q) {
-            Out* row = out + tetrahedron_index(d, j, k + q, l + n);
+            Out* row = layer + triangle_index(rest, j, k + q);
             for (int m = 0; m <= db - n - q; ++m) row[m] = Out(row[m] + product(*a, *s++));
           }
+        }
       }
 }
 
