@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "bezel/base/error.hpp"
@@ -168,7 +169,7 @@ TetrahedronLocation locate(int g, std::span<const Vec3> control, const Vec3& p, 
   double size = 0;
   for (const Vec3& c : whole.q) size = std::max(size, largest_coordinate(c));
 
-  const Bisection bisection(g);
+  std::optional<Bisection> bisection;  // most points need no halving
   std::vector<Piece> stack;
   stack.push_back(std::move(whole));
   bool undecided = false;
@@ -177,7 +178,7 @@ TetrahedronLocation locate(int g, std::span<const Vec3> control, const Vec3& p, 
     stack.pop_back();
     if (separated(g, piece.q, start_error + u * (g * piece.depth + 8) * size)) continue;
     // Newton from the piece's centre, at every third depth: a root anywhere inside ends the search.
-    if (piece.depth % 3 == 0) {
+    if (piece.depth % 3 == 0 && (piece.depth > 0 || !found.converged)) {
       Lambda4 centre{};
       for (std::size_t i = 0; i < 4; ++i)
         centre[i] = 0.25 * ((piece.corner[0][i] + piece.corner[1][i]) +
@@ -194,7 +195,8 @@ TetrahedronLocation locate(int g, std::span<const Vec3> control, const Vec3& p, 
     }
     Piece first{std::vector<Vec3>(q.size()), {}, piece.depth + 1},
         second{std::vector<Vec3>(q.size()), {}, piece.depth + 1};
-    bisection.split(piece.depth, piece.q.data(), first.q.data(), second.q.data());
+    if (!bisection) bisection.emplace(g);
+    bisection->split(piece.depth, piece.q.data(), first.q.data(), second.q.data());
     Bisection::split_corners(piece.depth, piece.corner, first.corner, second.corner);
     stack.push_back(std::move(first));
     stack.push_back(std::move(second));
