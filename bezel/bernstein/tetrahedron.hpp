@@ -9,8 +9,8 @@
 // included), tetrahedron_size(d) finite values and finite barycentrics that sum to 1, checks all
 // but the sum, and throws InputError otherwise. u = 2^-53; accuracies leave out underflow and terms
 // of order u^2, hold inside the tetrahedron, and say the largest fraction of the bound that the
-// tests have seen. The kernels without checks, for hot loops and other scalars, are in
-// tetrahedron_kernel.hpp.
+// tests have seen; costs are of one core of a Xeon with two cores and a load of 3.5. The kernels
+// without checks, for hot loops and other scalars, are in tetrahedron_kernel.hpp.
 
 #include <array>
 #include <span>
@@ -100,7 +100,7 @@ std::vector<Value> to_lagrange(int d, std::span<const Value> b);
 /// Bernstein coefficients from the values at (i,j,k,l)/d: the inverse of to_lagrange, computed in
 /// twice the precision for the values as given.
 /// @accuracy  u |result| + 64 u^2 8^d max|values|; within u max|result| of the exact inverse in all
-/// tests
+/// tests, up to degree 20
 /// @cost      O(d^4) double-double operations
 template <class Value>
 std::vector<Value> from_lagrange(int d, std::span<const Value> values);
