@@ -9,6 +9,7 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/bernstein/index.hpp"
+#include "bezel/bernstein/tetrahedron_index.hpp"
 #include "bezel/numeric/finite.hpp"
 #include "bezel/numeric/vec.hpp"
 
@@ -35,6 +36,9 @@ inline void interval_degree(int d) {
 }
 inline void triangle_degree(int d) {
   degree(d, max_triangle_degree, "triangle");
+}
+inline void tetrahedron_degree(int d) {
+  degree(d, max_tetrahedron_degree, "tetrahedron");
 }
 
 template <class Value>
@@ -69,6 +73,17 @@ void triangle(int d, std::span<const Value> b) {
     throw InputError("found " + std::to_string(b.size()) + " coefficients, expected " +
                      std::to_string(triangle_size(d)) + " for degree " + std::to_string(d) +
                      " on the triangle");
+  finite(b, "coefficient");
+}
+
+/// The same on the tetrahedron.
+template <class Value>
+void tetrahedron(int d, std::span<const Value> b) {
+  tetrahedron_degree(d);
+  if (b.size() != static_cast<std::size_t>(tetrahedron_size(d)))
+    throw InputError("found " + std::to_string(b.size()) + " coefficients, expected " +
+                     std::to_string(tetrahedron_size(d)) + " for degree " + std::to_string(d) +
+                     " on the tetrahedron");
   finite(b, "coefficient");
 }
 
