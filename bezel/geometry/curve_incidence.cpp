@@ -64,14 +64,16 @@ Exact bisect(Exact& c) {
 
 class Search {
  public:
-  Search(std::span<const Vec2> curve, const Vec2& p)
-      : curve_(curve), p_(p), d_(static_cast<int>(curve.size()) - 1) {}
+  /// Of the curve with control points plus - minus and the origin.
+  Search(std::span<const Vec2> plus, std::span<const Vec2> minus)
+      : plus_(plus), minus_(minus), d_(static_cast<int>(plus.size()) - 1) {}
 
   PointOnCurve run() {
     PointBuffer<max_curve_points> storage;
     Vec2* c = storage.data();
     for (int i = 0; i <= d_; ++i) {
-      c[i] = curve_[static_cast<std::size_t>(i)] - p_;
+      const auto k = static_cast<std::size_t>(i);
+      c[i] = plus_[k] - minus_[k];
       largest_ = std::max({largest_, std::fabs(c[i].x()), std::fabs(c[i].y())});
     }
     if (largest_ < 0x1p1000)
@@ -126,9 +128,9 @@ class Search {
   void prepare() {
     if (y_) return;
     Exact x, y;
-    for (const Vec2& b : curve_) {
-      x.push_back(Dyadic(b.x()) - Dyadic(p_.x()));
-      y.push_back(Dyadic(b.y()) - Dyadic(p_.y()));
+    for (std::size_t i = 0; i < plus_.size(); ++i) {
+      x.push_back(Dyadic(plus_[i].x()) - Dyadic(minus_[i].x()));
+      y.push_back(Dyadic(plus_[i].y()) - Dyadic(minus_[i].y()));
     }
     // One coordinate a multiple of the other (or zero): they share all roots.
     std::size_t k = 0;
@@ -194,8 +196,7 @@ class Search {
     out_.ray_crossings += (y.back().sign() > 0 ? 1 : 0) - (y.front().sign() > 0 ? 1 : 0);
   }
 
-  std::span<const Vec2> curve_;
-  Vec2 p_;
+  std::span<const Vec2> plus_, minus_;
   int d_;
   double largest_ = 0.0;
   bool dependent_ = false;
@@ -206,7 +207,12 @@ class Search {
 }  // namespace
 
 PointOnCurve point_on_curve(std::span<const Vec2> curve, const Vec2& p) {
-  return Search(curve, p).run();
+  const std::vector<Vec2> minus(curve.size(), p);
+  return Search(curve, minus).run();
+}
+
+std::vector<Incidence> vanishing_speed(std::span<const Vec2> curve) {
+  return Search(curve.subspan(1), curve.first(curve.size() - 1)).run().incidences;
 }
 
 }  // namespace bezel::geometry_kernel

@@ -29,4 +29,7 @@ struct PointOnCurve {
 /// rounding, then exactly, 75 halvings beyond the 45 in doubles at most.
 PointOnCurve point_on_curve(std::span<const Vec2> curve, const Vec2& p);
 
+/// Where the derivative of a curve of degree >= 1 vanishes, by the same search.
+std::vector<Incidence> vanishing_speed(std::span<const Vec2> curve);
+
 }  // namespace bezel::geometry_kernel
