@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "bezel/base/error.hpp"
-#include "bezel/geometry/curve.hpp"
 #include "bezel/geometry/curve_check.hpp"
 #include "bezel/geometry/curve_incidence.hpp"
 #include "bezel/geometry/curve_kernel.hpp"
@@ -45,9 +44,22 @@ class DistanceSearch {
   double scaled(double distance) const { return std::ldexp(distance, -exponent_); }
   double unscaled(double distance) const { return std::ldexp(distance, exponent_); }
 
-  /// The parameter of the nearest point, not proven. (foot_point squares: not for any scale.)
+  /// The parameter of a near point: of the nearest as a rule, and within 4/3 of its distance when
+  /// 2000 pieces suffice.
   double foot() {
-    return foot_point({control_.data(), static_cast<std::size_t>(d_) + 1}, Vec2{}).s;
+    pieces_ = 0;
+    near_ = {0.0, distance_bound(0.0)};
+    offer(1.0);
+    approach(control_.data(), 0.0, 1.0, 0);
+    // Newton's method on (c - p) . c', its second term left out: it only needs to improve.
+    for (int i = 0; i < 12; ++i) {
+      const auto c = geometry_kernel::curve_point(d_, control_.data(), near_.s);
+      const double slope = dot(c.derivative, c.derivative);
+      const double before = near_.distance;
+      if (slope > 0.0) offer(std::clamp(near_.s - dot(c.value, c.derivative) / slope, 0.0, 1.0));
+      if (!(near_.distance < before)) break;
+    }
+    return near_.s;
   }
   /// The distance at s, rounded up: de Casteljau's error is 3 d u largest in each coordinate.
   double distance_bound(double s) {
@@ -116,6 +128,25 @@ class DistanceSearch {
     }
   }
 
+  void offer(double s) {
+    const double distance = distance_bound(s);
+    if (distance < near_.distance) near_ = {s, distance};
+  }
+
+  void approach(const Vec2* c, double lo, double hi, int level) {
+    const double error = (2.0 + d_ * level) * u * largest_ + tiny;
+    if (++pieces_ > 2000 || level > deepest || lower_bound(c, error) >= 0.75 * near_.distance)
+      return;
+    const double mid = 0.5 * (lo + hi);
+    offer(mid);
+    PointBuffer<max_curve_points> left, right;
+    geometry_kernel::halve(d_, c, left.data(), right.data());
+    const bool left_first = std::hypot(c[0].x(), c[0].y()) <= std::hypot(c[d_].x(), c[d_].y());
+    if (left_first) approach(left.data(), lo, mid, level + 1);
+    approach(right.data(), mid, hi, level + 1);
+    if (!left_first) approach(left.data(), lo, mid, level + 1);
+  }
+
   static double upwards(double distance, double error) {
     return distance * (1.0 + 4.0 * u) + 1.5 * error;
   }
@@ -143,6 +174,9 @@ class DistanceSearch {
   double largest_ = 0.0;
   double within_ = 0.0, threshold_ = 0.0, smallest_ = 0.0;
   int pieces_ = 0;
+  struct Near {
+    double s, distance;
+  } near_{};
   Found found_;
 };
 

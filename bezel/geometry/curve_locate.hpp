@@ -46,13 +46,11 @@ struct CurveLocateResult {
 ///            is larger; with tolerance 0 it is 0 where the distance is lost in rounding, yet
 ///            proven not to vanish
 /// @throws    InputError for bad control points, point or tolerance
-/// @limits    tolerance 0: a parameter that is no binary fraction of at most 120 bits is proven
-/// only
-///            where one coordinate of curve - p is a multiple of the other (lines); else such an
+/// @limits    tolerance 0: a parameter that is no binary fraction of at most 120 bits is proven on
+///            lines only (one coordinate of curve - p a multiple of the other); else such an
 ///            incidence is undecided. tolerance > 0: undecided after 20000 pieces
-/// @cost      4 us at degree 3 when off, 6 us when on with a tolerance, 9 us when exactly on; 12
-/// us,
-///            17 us and 70 us at degree 10
+/// @cost      1 us at degree 3 when off, 9 us when on with a tolerance or exactly; 2 us, 23 us and
+///            70 us at degree 10
 /// @source    docs/methods/geometry.md
 [[nodiscard]] CurveLocateResult locate(std::span<const Vec2> curve, const Vec2& p,
                                        double tolerance = 0.0);

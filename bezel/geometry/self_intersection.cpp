@@ -96,7 +96,7 @@ class SelfSearch {
         along[i] = k % 2 == 0 ? a * x[i] + b * y[i] : a * y[i] - b * x[i];
       const ExactPolynomial p{std::span<const Dyadic>(along)};
       if (p.is_zero()) return;
-      for (double h = 0.5; h >= 0x1p-40; h *= 0.5) {
+      for (double h = 1.0; h >= 0x1p-40; h *= 0.5) {
         const double lo = std::max(0.0, s - h), hi = std::min(1.0, s + h);
         const int left = lo < s ? one_sign(p.specialize(Dyadic(lo), Dyadic(s))) : 0;
         const int right = s < hi ? one_sign(p.specialize(Dyadic(s), Dyadic(hi))) : 0;
@@ -124,22 +124,26 @@ class SelfSearch {
     double largest = 0.0;
     for (const Vec2& e : hodograph)
       largest = std::max({largest, std::fabs(e.x()), std::fabs(e.y())});
-    const Vec2 first = hodograph.front(), last = hodograph.back();
-    const double f = norm(first), l = norm(last);
-    if (f == 0.0 || l == 0.0) return;
-    const Vec2 n = (1.0 / f) * first + (1.0 / l) * last;
+    // At a joint without speed the next difference gives the direction.
+    const auto moves = [](const Vec2& e) { return !(e == Vec2{}); };
+    const auto start = std::find_if(hodograph.begin(), hodograph.end(), moves);
+    const auto stop = std::find_if(hodograph.rbegin(), hodograph.rend(), moves);
+    const auto at_rest = start - hodograph.begin(), at_rest_last = stop - hodograph.rbegin();
+    const Vec2 n = (1.0 / norm(*start)) * *start + (1.0 / norm(*stop)) * *stop;
     // Specializing costs 3 d u, the differences and the product a few u more, in two coordinates.
     const double error = 16.0 * (n_ + 1) * u * largest * (std::fabs(n.x()) + std::fabs(n.y()));
-    const auto forward = [&](double lo, double hi) {
-      const auto part = bernstein::specialize(std::span<const Vec2>(hodograph), lo, hi);
-      return std::all_of(part.begin(), part.end(),
-                         [&](const Vec2& e) { return dot(e, n) > error; });
-    };
-    for (double h = 0.25; h >= 0x1p-30; h *= 0.5)
-      if (forward(0.0, h) && forward(1.0 - h, 1.0)) {
+    const auto forward = [&](const Vec2& e) { return dot(e, n) > error; };
+    for (double h = 0.25; h >= 0x1p-30; h *= 0.5) {
+      const std::span<const Vec2> all(hodograph);
+      const auto head = bernstein::specialize(all, 0.0, h),
+                 tail = bernstein::specialize(all, 1.0 - h, 1.0);
+      // Coefficients that are zero stay exactly zero at the ends.
+      if (std::all_of(head.begin() + at_rest, head.end(), forward) &&
+          std::all_of(tail.begin(), tail.end() - at_rest_last, forward)) {
         excluded_.push_back({0.0, h, 1.0 - h, 1.0});
         return;
       }
+    }
   }
 
   // ---- D ----
@@ -337,7 +341,9 @@ class SelfSearch {
     // Two small pieces far from each other that D's linear part does not separate: nearly parallel,
     // which `intersect` is made for.
     const bool parallel = box.level >= 12 && box.t_lo - box.s_hi >= 1024 * (box.s_hi - box.s_lo);
-    if (parallel || position == Hull::lost || box.level >= deepest || boxes_ >= most_boxes_) {
+    // (Straight curves are lost across their line from the start.)
+    const bool lost = position == Hull::lost && box.level >= 8;
+    if (parallel || lost || box.level >= deepest || boxes_ >= most_boxes_) {
       leave_open(box);
       return;
     }

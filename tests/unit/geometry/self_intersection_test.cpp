@@ -94,6 +94,7 @@ TEST(SelfIntersectionTest, None) {
   expect_no_pairs(self_intersections(Points{{{0, 0}}, {{1, 2}}, {{2, 0}}}));
   expect_no_pairs(self_intersections(Points{{{0, 0}}, {{3, 1}}}));
   expect_no_pairs(self_intersections(Points{{{0, 0}}, {{1, 1}}, {{2, 2}}, {{3, 3}}}));
+  expect_no_pairs(self_intersections(Points{{{0, 3}}, {{0, 3}}, {{0, 3}}, {{2, 6}}}));
   const auto point = self_intersections(Points{{{2, 1}}});
   EXPECT_TRUE(point.closed);
   EXPECT_TRUE(point.cusps.empty());
@@ -131,6 +132,10 @@ TEST(SelfIntersectionTest, ClosedCurves) {
   const auto drop = self_intersections(Points{{{0, 0}}, {{4, 4}}, {{4, -4}}, {{0, 0}}});
   EXPECT_TRUE(drop.closed);
   expect_no_pairs(drop);
+  // Without speed at the joint.
+  const auto rest = self_intersections(Points{{{3, 2}}, {{3, 2}}, {{4, 4}}, {{3, 4}}, {{3, 2}}});
+  EXPECT_EQ(rest.cusps.size(), 1u);
+  expect_no_pairs(rest);
   const auto smooth = self_intersections(
       Points{{{0, 0}}, {{1, 0}}, {{3, 2}}, {{0, 4}}, {{-3, 2}}, {{-1, 0}}, {{0, 0}}});
   EXPECT_TRUE(smooth.closed);
