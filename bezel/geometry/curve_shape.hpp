@@ -109,9 +109,8 @@ struct WindingNumber {
 };
 /// How often a closed chain goes round p, decided by exact signs.
 ///
-/// @limits    undecided only where two different coordinate polynomials may share a root that is
-/// not
-///            a double: `locate` in curve_locate.hpp says more
+/// @limits    undecided only where both coordinates may share a root that is not a double: see
+///            `locate` in curve_locate.hpp
 /// @cost      0.2 us per cubic away from p; exact arithmetic where p is within rounding of a curve:
 ///            60 us for cubics, 20 ms at degree 60
 WindingNumber winding_number(std::span<const Curve> chain, const Vec2& p);
