@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bezel/base/error.hpp"
+#include "bezel/geometry/curve_check.hpp"
 #include "bezel/geometry/curve_kernel.hpp"
 #include "bezel/numeric/quadrature.hpp"
 
@@ -14,22 +15,8 @@ namespace bezel {
 using geometry_kernel::curve_point;
 using geometry_kernel::max_curve_points;
 
-namespace {
-
-void check_curve(std::span<const Vec2> control) {
-  if (control.empty()) throw InputError("the curve has no control points, expected 1 to 61");
-  if (control.size() > static_cast<std::size_t>(max_curve_points))
-    throw InputError("the curve has " + std::to_string(control.size()) +
-                     " control points, expected 1 to 61");
-  for (std::size_t i = 0; i < control.size(); ++i)
-    if (!std::isfinite(control[i].x()) || !std::isfinite(control[i].y()))
-      throw InputError("control point " + std::to_string(i) + " of the curve is not finite");
-}
-
-}  // namespace
-
 Curve::Curve(std::vector<Vec2> control) : control_(std::move(control)) {
-  check_curve(control_);
+  geometry_kernel::checked_degree(control_);
 }
 
 Vec2 Curve::operator()(double s) const {
@@ -77,7 +64,7 @@ double Curve::length() const {
 }
 
 CurveCache cache_curve(std::span<const Vec2> control) {
-  check_curve(control);
+  geometry_kernel::checked_degree(control);
   const int d = static_cast<int>(control.size()) - 1;
   CurveCache cache{};
   cache.control = control;
@@ -179,7 +166,7 @@ struct NearestSearch {
 }  // namespace
 
 FootPoint foot_point(std::span<const Vec2> curve, const Vec2& p) {
-  check_curve(curve);
+  geometry_kernel::checked_degree(curve);
   if (!std::isfinite(p.x()) || !std::isfinite(p.y())) throw InputError("the point is not finite");
   const int d = static_cast<int>(curve.size()) - 1;
   NearestSearch search{d, curve.data(), p, std::numeric_limits<double>::infinity(), 0.0};
