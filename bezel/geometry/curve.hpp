@@ -90,8 +90,9 @@ struct IntersectOptions {
 /// @param a, b control points, 1 to 61 each, finite; a curve whose control points coincide to
 ///          rounding counts as a point at parameter 0
 /// @return   crossings, tangencies, overlaps in ascending s; overlaps are disjoint in s unless a
-///           curve folds back; what could not be decided within 20000 boxes, or where a curve is
-///           singular (a cusp on the other curve), is in `unresolved` with the reason
+///           curve folds back; what could not be decided within 20000 boxes and 128 zooms into
+///           nearly coincident parts, or where a curve is singular (a cusp on the other curve), is
+///           in `unresolved` with the reason
 /// @throws   InputError for bad control points or a negative or infinite distance
 /// @accuracy crossings: parameters within 4 u condition up to a condition of 2^20; beyond that the
 ///           residuals are compensated: within 4 u up to a condition of 1/u or so, where it

@@ -173,6 +173,9 @@ Exact exact_point(int d, const Vec2* b, double s) {
 
 }  // namespace
 
+// Of one call: rounding drawn large has places without a sign at every scale.
+constexpr int max_zooms = 128;
+
 /// The signed distance of b from a over [s0, s1] x [t0, t1], and what follows from it.
 class ParallelPair {
  public:
@@ -545,7 +548,14 @@ class ParallelPair {
       const double width = g.s1 - g.s0;
       const double lo = std::max(pieces.front().s0, g.s0 - width),
                    hi = std::min(pieces.back().s1, g.s1 + width);
-      if (zooms > 0 && width > 1e-10 && hi - lo < 0.5 * (pieces.back().s1 - pieces.front().s0)) {
+      const bool zoom =
+          zooms > 0 && width > 1e-10 && hi - lo < 0.5 * (pieces.back().s1 - pieces.front().s0);
+      if (zoom && ++f_.zooms_ > max_zooms) {
+        const double ta = opposite(g.s0), tb = opposite(g.s1);
+        f_.unresolved(g.s0, g.s1, std::min(ta, tb), std::max(ta, tb),
+                      "the curves are too close to tell apart");
+        any = true;
+      } else if (zoom) {
         pieces_.clear();
         interpolate(lo, hi, 6);
         any = read_signs(lo < g.s0 ? before : first_state, hi > g.s1 ? after : last_state,

@@ -102,6 +102,7 @@ class IntersectSearch {
   double shallow_;  // sine below which a crossing may count as an overlap: left to the second stage
   int parallel_depth_;
   int work_ = 0;
+  int zooms_ = 0;  // of all nearly parallel pieces together
   std::array<Contact, 16> contacts_;
   int contact_count_ = 0;
   std::vector<ParallelBox> parallel_;
