@@ -293,7 +293,7 @@ class Finder {
     while (b_[static_cast<std::size_t>(first)] == 0.0) ++first;
     while (b_[n_ - 1 - static_cast<std::size_t>(last)] == 0.0) ++last;
     if (first > 0) found_at(0.0, first);
-    if (n_ > 1) search(0.0, 1.0, 0, {});
+    if (n_ > 1) search();
     if (last > 0) found_at(1.0, last);
     return std::move(found_);
   }
@@ -310,45 +310,65 @@ class Finder {
     found_.push_back({s, lo, hi, false, 1, 1, signs_.condition(s)});
   }
 
-  /// The roots in (lo, hi), whose coefficients are in part(at), and exactly in `exact` unless that
-  /// is empty. Every part is a binary fraction of [0, 1], so lo, hi, and the middle of lo and hi
-  /// are doubles until lo and hi are neighbours.
-  void search(double lo, double hi, std::size_t at, Exact exact) {
-    for (;;) {
-      const bool smallest = next_up(lo) >= hi;
-      const double mid = lo + 0.5 * (hi - lo);
-      Variations v = exact.empty() ? variations(part(at)) : variations(exact);
-      if (v.most == 0) return;
-      if (v.most == 1 && v.first * v.last < 0) {
-        bracket(lo, hi, v.first, part(at));
-        return;
+  /// A part (lo, hi) whose roots are still to be found, in its turn from left to right: the at-th
+  /// has its coefficients in part(at), and exactly in `exact` unless that is empty. Every part is a
+  /// binary fraction of [0, 1], so lo, hi, and the middle of lo and hi are doubles until lo and hi
+  /// are neighbours.
+  struct Open {
+    double lo, hi;
+    Exact exact;
+    int zeros_at_lo;  // multiplicity of a root at lo, to be reported first
+  };
+
+  void search() {
+    // Not by recursion: near 0 there are a thousand levels.
+    std::vector<Open> open;
+    open.push_back({0.0, 1.0, {}, 0});
+    while (!open.empty()) {
+      const std::size_t at = open.size() - 1;
+      if (open[at].zeros_at_lo > 0) found_at(open[at].lo, open[at].zeros_at_lo);
+      open[at].zeros_at_lo = 0;
+      std::optional<Open> left = step(open[at], at);
+      if (!left) {
+        open.pop_back();
+      } else if (left->lo < left->hi) {
+        open.push_back(std::move(*left));
       }
-      if (parts_.size() < (at + 2) * n_) parts_.resize(2 * parts_.size());
-      if (!smallest && bisect_doubled(at)) {
-        search(lo, mid, at + 1, {});
-        exact.clear();
-        lo = mid;
-        continue;
-      }
-      if (exact.empty()) {
-        exact = restrict_to(
-            Exact(signs_.exact().coefficients().begin(), signs_.exact().coefficients().end()), lo,
-            hi);
-        round_to(part(at), exact);
-        continue;  // now the variations are known exactly
-      }
-      if (smallest) {
-        search_below(lo, hi, lo, std::move(exact), 0);
-        return;
-      }
-      Exact left = bisect(exact);
-      const int zeros = leading_zeros(exact);
-      round_to(part(at + 1), left);
-      search(lo, mid, at + 1, std::move(left));
-      if (zeros > 0) found_at(mid, zeros);
-      round_to(part(at), exact);
-      lo = mid;
     }
+  }
+
+  /// Settles a part (nothing returned), or makes it its right half and returns the left one, whose
+  /// coefficients are then in part(at + 1), or an empty interval when there is more to do at once.
+  std::optional<Open> step(Open& p, std::size_t at) {
+    const bool smallest = next_up(p.lo) >= p.hi;
+    const double mid = p.lo + 0.5 * (p.hi - p.lo);
+    const Variations v = p.exact.empty() ? variations(part(at)) : variations(p.exact);
+    if (v.most == 0) return {};
+    if (v.most == 1 && v.first * v.last < 0) {
+      bracket(p.lo, p.hi, v.first, part(at));
+      return {};
+    }
+    if (parts_.size() < (at + 2) * n_) parts_.resize(2 * parts_.size());
+    if (!smallest && bisect_doubled(at)) {
+      p.exact.clear();
+      return Open{std::exchange(p.lo, mid), mid, {}, 0};
+    }
+    if (p.exact.empty()) {
+      p.exact = restrict_to(
+          Exact(signs_.exact().coefficients().begin(), signs_.exact().coefficients().end()), p.lo,
+          p.hi);
+      round_to(part(at), p.exact);
+      return Open{p.lo, p.lo, {}, 0};  // now the variations are known exactly
+    }
+    if (smallest) {
+      search_below(p.lo, p.hi, p.lo, std::move(p.exact), 0);
+      return {};
+    }
+    Exact left = bisect(p.exact);
+    p.zeros_at_lo = leading_zeros(p.exact);
+    round_to(part(at + 1), left);
+    round_to(part(at), p.exact);
+    return Open{std::exchange(p.lo, mid), mid, std::move(left), 0};
   }
 
   /// Bisects part(at): the right half stays there, the left one goes to part(at + 1). False when
