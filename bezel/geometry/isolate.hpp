@@ -1,0 +1,47 @@
+#pragma once
+// The first stage of a curve-curve intersection: in double arithmetic with bounds on its rounding,
+// it proves what subdivision can prove quickly and leaves the rest as boxes.
+
+#include <span>
+#include <vector>
+
+#include "bezel/numeric/vec.hpp"
+
+namespace bezel::geometry_kernel {
+
+/// A simple common point, proven: exactly one root of a(s) = b(t) lies in the box, not on its
+/// border, and the box lies in [0, 1]^2.
+struct IsolatedRoot {
+  double s, t;  ///< within 4 u condition of the root, and inside the box
+  double s_lo, s_hi, t_lo, t_hi;
+  int sign;  ///< of cross(a', b') in the whole box: +1 or -1
+};
+
+/// A closed box [s0, s1] x [t0, t1] in [0, 1]^2 about which more must be found out.
+struct OpenBox {
+  double s0, s1, t0, t1;
+  /// 0: nothing is known. Else cross(a'(s), b'(t)) has this sign for all s, t in the box made
+  /// larger by an eighth of its width on each side (also beyond [0, 1], where the polynomials go
+  /// on), which holds at most one root of the two polynomials: one too near to the border of
+  /// [0, 1]^2 to be decided in double.
+  int sign;
+  double s, t;  ///< sign != 0: where Newton's method ended, near the root; else the middle
+};
+
+/// Every common point with parameters in [0, 1] is in the box of one root, and of one only, or in
+/// an open box.
+struct Isolation {
+  std::vector<IsolatedRoot> roots;
+  std::vector<OpenBox> open;
+  void clear() {
+    roots.clear();
+    open.clear();
+  }
+};
+
+/// @param a, b   control points, 1 to 61 each, checked by the caller: finite, the largest
+///               coordinate of both between 2^-300 and 2^300
+/// @param out    cleared first; its storage is reused
+void isolate(std::span<const Vec2> a, std::span<const Vec2> b, Isolation& out);
+
+}  // namespace bezel::geometry_kernel
