@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "bezel/base/error.hpp"
+#include "bezel/geometry/intersect_exact.hpp"
 #include "bezel/geometry/intersect_search.hpp"
 #include "bezel/geometry/newton_intersection_kernel.hpp"
 
@@ -42,14 +43,18 @@ void intersect(const CurveCache& a, const CurveCache& b, const IntersectOptions&
   const double tol = options.coincidence_distance;
   if (!(tol >= 0) || !std::isfinite(tol))
     throw InputError("the coincidence distance must be finite and not negative");
-  const double margin = std::max(tol, 0x1p-51 * std::max(a.magnitude, b.magnitude));
+  const double margin =
+      tol > 0.0 ? std::max(tol, 0x1p-51 * std::max(a.magnitude, b.magnitude)) : 0.0;
   if (a.box.lo.x() > b.box.hi.x() + margin || b.box.lo.x() > a.box.hi.x() + margin ||
       a.box.lo.y() > b.box.hi.y() + margin || b.box.lo.y() > a.box.hi.y() + margin)
     return;
   // The fat line's own rounding: products of differences, relative to the chord.
-  const double slack = margin + 0x1p-50 * std::max(a.box.diameter(), b.box.diameter());
+  const double slack = margin + 0x1p-49 * (a.box.diameter() + b.box.diameter());
   if (outside_fat_line(a, b, slack) || outside_fat_line(b, a, slack)) return;
-  IntersectSearch(a, b, options, out).run();
+  if (tol == 0.0)
+    geometry_kernel::intersect_exactly(a.control, b.control, out);
+  else
+    IntersectSearch(a, b, options, out).run();
 }
 
 namespace geometry_kernel {

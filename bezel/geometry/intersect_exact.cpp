@@ -1,0 +1,471 @@
+#include "bezel/geometry/intersect_exact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "bezel/geometry/curve_incidence.hpp"
+#include "bezel/geometry/curve_kernel.hpp"
+
+namespace bezel::geometry_kernel {
+namespace {
+
+constexpr double u = 0x1p-53;
+constexpr int deepest = 40;  // halvings of each curve
+
+bool is_point(std::span<const Vec2> c) {
+  return std::all_of(c.begin(), c.end(), [&](const Vec2& p) { return p == c[0]; });
+}
+
+double largest_coordinate(std::span<const Vec2> a, std::span<const Vec2> b) {
+  double m = 0.0;
+  for (const auto& c : {a, b})
+    for (const Vec2& p : c) m = std::max({m, std::fabs(p.x()), std::fabs(p.y())});
+  return m;
+}
+
+Dyadic end(int i) {
+  return Dyadic(static_cast<double>(i));
+}
+
+struct Box {
+  double s0, s1, t0, t1;
+  int depth;
+};
+
+class Search {
+ public:
+  Search(std::span<const Vec2> a, std::span<const Vec2> b, CurveIntersections& out)
+      : a_(a), b_(b), out_(out) {}
+
+  void run() {
+    magnitude_ = largest_coordinate(a_, b_);
+    if (is_point(a_) || is_point(b_)) {
+      points();
+      return;
+    }
+    exponent_ = std::ilogb(magnitude_) + 1;
+    if (!isolate_scaled()) isolation_.open = {{0.0, 1.0, 0.0, 1.0, 0, 0.5, 0.5}};
+    for (const IsolatedRoot& r : isolation_.roots)
+      resolution_.roots.push_back(
+          {r.s, r.t, r.s_lo, r.s_hi, r.t_lo, r.t_hi, 1, r.sign, 0.0, false, false});
+    if (!isolation_.open.empty()) {
+      const int m = static_cast<int>(a_.size()) - 1, n = static_cast<int>(b_.size()) - 1;
+      nodes_ = std::max(64, 40000 / (m * n));
+      exact_a_.emplace(a_, exponent_);
+      exact_b_.emplace(b_, exponent_);
+      for (const OpenBox& box : isolation_.open)
+        if (box.sign != 0) border(box);
+      parallel();
+    }
+    report();
+  }
+
+ private:
+  // ---- A curve that is a point ----
+
+  void points() {
+    const bool first = is_point(a_);
+    const std::span<const Vec2> curve = first ? b_ : a_;
+    const Vec2 p = first ? a_[0] : b_[0];
+    const auto add = [&](double s) {
+      ResolvedRoot root{};
+      root.s = root.s_lo = root.s_hi = first ? 0.0 : s;
+      root.t = root.t_lo = root.t_hi = first ? s : 0.0;
+      root.s_end = root.t_end = true;
+      resolution_.roots.push_back(root);
+    };
+    if (is_point(curve)) {
+      if (curve[0] == p) add(0.0);
+    } else {
+      for (const Incidence& place : point_on_curve(curve, p).incidences) {
+        if (place.lo == place.hi || place.proven) {
+          add(place.lo);
+          continue;
+        }
+        const ExactCurve c(curve, 0);
+        ExactTaylor f = c.monomial();
+        for (int x = 0; x < 2; ++x) f[static_cast<std::size_t>(x)][0] -= Dyadic(p[x]);
+        const auto common = common_root(f[0], f[1], Dyadic(place.lo), Dyadic(place.hi));
+        if (common && *common) add(place.lo);
+        if (!common)
+          resolution_.undecided.push_back({first ? 0.0 : place.lo, first ? 0.0 : place.hi,
+                                           first ? place.lo : 0.0, first ? place.hi : 0.0,
+                                           "a point on the curve, or nearly so"});
+      }
+    }
+    report();
+  }
+
+  // ---- The first stage ----
+
+  /// False when coordinates that differ by more than doubles hold cannot be scaled exactly.
+  bool isolate_scaled() {
+    if (exponent_ > -300 && exponent_ < 300) {
+      isolate(a_, b_, isolation_);
+      return true;
+    }
+    std::vector<Vec2> a(a_.begin(), a_.end()), b(b_.begin(), b_.end());
+    for (auto* c : {&a, &b})
+      for (Vec2& p : *c)
+        for (int x = 0; x < 2; ++x) {
+          const double scaled = std::ldexp(p[x], static_cast<int>(-exponent_));
+          if (std::ldexp(scaled, static_cast<int>(exponent_)) != p[x]) return false;
+          p[x] = scaled;
+        }
+    isolate(a, b, isolation_);
+    return true;
+  }
+
+  /// A simple root close to the border of [0, 1]^2.
+  void border(const OpenBox& box) {
+    // A common end point is the root.
+    for (const int i : {0, 1})
+      for (const int j : {0, 1})
+        if ((i == 0 ? box.s0 == 0.0 : box.s1 == 1.0) && (j == 0 ? box.t0 == 0.0 : box.t1 == 1.0) &&
+            (i == 0 ? a_.front() : a_.back()) == (j == 0 ? b_.front() : b_.back())) {
+          const double s = i, t = j;
+          ResolvedRoot root{s, t, box.s0, box.s1, box.t0, box.t1, 1, box.sign, 0.0, true, true};
+          resolution_.roots.push_back(root);
+          return;
+        }
+    const double ds = 0x1p-10 * (box.s1 - box.s0), dt = 0x1p-10 * (box.t1 - box.t0);
+    const std::size_t before = resolution_.roots.size();
+    process({std::max(box.s0, box.s - ds), std::min(box.s1, box.s + ds),
+             std::max(box.t0, box.t - dt), std::min(box.t1, box.t + dt), deepest - 10});
+    if (resolution_.roots.size() == before) process({box.s0, box.s1, box.t0, box.t1, 0});
+  }
+
+  // ---- Nearly parallel pieces ----
+
+  void parallel() {
+    std::vector<Box> boxes;
+    for (const OpenBox& box : isolation_.open)
+      if (box.sign == 0) boxes.push_back({box.s0, box.s1, box.t0, box.t1, 0});
+    if (boxes.empty()) return;
+    for (const Box& box : boxes)
+      if (find_coincidence(box)) break;
+    if (map_) report_overlap();
+    if (!map_) join(boxes);
+    for (const Box& box : boxes) process(box);
+  }
+
+  /// Boxes that touch become one where one of the curves is a graph over the whole.
+  void join(std::vector<Box>& boxes) {
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      for (std::size_t k = 0; k < boxes.size(); ++k) {
+        const Box &p = boxes[i], &q = boxes[k];
+        if (i == k || p.s0 > q.s1 || q.s0 > p.s1 || p.t0 > q.t1 || q.t0 > p.t1) continue;
+        const Box whole{std::min(p.s0, q.s0), std::max(p.s1, q.s1), std::min(p.t0, q.t0),
+                        std::max(p.t1, q.t1), 0};
+        TubeSearch on_b(*exact_a_, *exact_b_, false, nodes_, resolution_);
+        if (!on_b.graph(whole.t0, whole.t1)) continue;
+        boxes[i] = whole;
+        boxes.erase(boxes.begin() + static_cast<std::ptrdiff_t>(k));
+        i = static_cast<std::size_t>(-1);  // from the start again
+        break;
+      }
+  }
+
+  // ---- Curves that coincide ----
+
+  /// An end point of one curve on the other, at which both turn out to be one curve.
+  bool find_coincidence(const Box& box) {
+    const auto touches = [](int i, double lo, double hi) { return i == 0 ? lo == 0.0 : hi == 1.0; };
+    for (const int i : {0, 1})
+      for (const int j : {0, 1})
+        if (touches(i, box.s0, box.s1) && touches(j, box.t0, box.t1) &&
+            (i == 0 ? a_.front() : a_.back()) == (j == 0 ? b_.front() : b_.back()) &&
+            try_map({end(i)}, {end(j)}))
+          return true;
+    for (const int i : {0, 1}) {
+      for (const double x : {0.5, 0.0, 1.0}) {
+        if (touches(i, box.s0, box.s1)) {
+          const auto t = foot(*exact_b_, b_, (*exact_a_)(end(i)), i == 0 ? a_.front() : a_.back(),
+                              box.t0 + x * (box.t1 - box.t0));
+          if (t && try_map({end(i)}, *t)) return true;
+        }
+        if (touches(i, box.t0, box.t1)) {
+          const auto s = foot(*exact_a_, a_, (*exact_b_)(end(i)), i == 0 ? b_.front() : b_.back(),
+                              box.s0 + x * (box.s1 - box.s0));
+          if (s && try_map(*s, {end(i)})) return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  bool try_map(const Ratio& s, const Ratio& t) {
+    const auto contact = verify_contact(*exact_a_, *exact_b_, s, t);
+    if (!contact) return false;
+    const auto change = coincide(*contact);
+    if (!change) return false;
+    map_.emplace(*contact, *change);
+    return true;
+  }
+
+  /// The rational parameter of p on a curve, if it seems to be on it, by Newton's method from
+  /// `start`.
+  std::optional<Ratio> foot(const ExactCurve& curve, std::span<const Vec2> control,
+                            const ExactPoint& p, const Vec2& rounded, double start) {
+    const int d = static_cast<int>(control.size()) - 1;
+    double near = start;
+    for (int i = 0; i < 40; ++i) {
+      const CurvePoint f = curve_point(d, control.data(), near, rounded);
+      const double speed_squared = dot(f.derivative, f.derivative);
+      if (!(speed_squared > 0) || !std::isfinite(speed_squared)) return std::nullopt;
+      const double step = dot(f.value, f.derivative) / speed_squared;
+      near = std::clamp(near - step, -0.25, 1.25);
+      if (std::fabs(step) <= 0x1p-48) break;
+    }
+    const CurvePoint f = curve_point(d, control.data(), near, rounded);
+    if (!(norm(f.value) <= 0x1p-40 * magnitude_)) return std::nullopt;
+    // Exactly: simple fractions are found at once, others after a few steps.
+    Dyadic t(near);
+    const double scale = std::ldexp(1.0, static_cast<int>(-exponent_));
+    const Vec2 slope = scale * f.derivative;
+    double step = 0.0;
+    for (int i = 0; i < 12; ++i) {
+      const ExactPoint q = curve(t);
+      const Vec2 off{{(p[0] - q[0]).to_double(), (p[1] - q[1]).to_double()}};
+      step = dot(off, slope) / dot(slope, slope);
+      if (step == 0.0) break;
+      t += Dyadic(step);
+      if (std::fabs(step) < 0x1p-330) break;
+    }
+    if (t.sign() < 0) return std::nullopt;
+    if (step == 0.0) return Ratio{t};
+    const Dyadic pad = Dyadic(0x1p-320);
+    return simplest_between(t < pad ? Dyadic() : t - pad, t + pad, 150);
+  }
+
+  void report_overlap() {
+    const Ratio zero{}, one{1.0};
+    Ratio first = map_->backward(zero), last = map_->backward(one);
+    Ratio t_first = zero, t_last = one;
+    if (compare(last, first) < 0) {
+      std::swap(first, last);
+      std::swap(t_first, t_last);
+    }
+    if (compare(first, zero) < 0) {
+      first = zero;
+      t_first = map_->forward(zero);
+    }
+    if (compare(one, last) < 0) {
+      last = one;
+      t_last = map_->forward(one);
+    }
+    const int order = compare(first, last);
+    if (order < 0)
+      out_.overlaps.push_back(
+          {to_double(first), to_double(last), to_double(t_first), to_double(t_last), 0.0});
+    if (order == 0) {
+      const double s = to_double(first), t = to_double(t_first);
+      resolution_.roots.push_back({s, t, s, s, t, t, 0, 0, 0.0, true, true});
+    }
+  }
+
+  enum class Diagonal { beside, alone, unclear };
+  /// Where the box lies to the pairs (s, map(s)): beside; or no others are in it.
+  Diagonal diagonal(const Box& box) const {
+    double lo = 0.0, hi = 0.0;
+    map_->image(box.s0, box.s1, lo, hi);
+    if (hi < box.t0 || lo > box.t1) return Diagonal::beside;
+    lo = std::min(lo, box.t0);
+    hi = std::max(hi, box.t1);
+    // b(map(s)) = b(t) needs map(s) = t when b moves in one direction between.
+    const double centre = 0.5 * (lo + hi), radius = 0.5 * (hi - lo) * (1.0 + 0x1p-40);
+    if (one_way(exact_b_->taylor(Dyadic(centre)), radius, false)) return Diagonal::alone;
+    const auto cusp = simplest_between(Dyadic(std::max(lo, 0.0)), Dyadic(std::max(hi, 0.0)), 30);
+    if (cusp && cusp->den == Dyadic(1.0)) return Diagonal::unclear;
+    const ExactTaylor at_cusp =
+        exact_b_->taylor(cusp.value_or(Ratio{Dyadic(centre)}));
+    if (one_way(at_cusp, 2.0 * radius, true)) return Diagonal::alone;
+    return Diagonal::unclear;
+  }
+
+  /// Whether a direction exists in which the curve strictly moves within the radius.
+  /// @param rest  also where the first derivative vanishes in the middle
+  static bool one_way(const ExactTaylor& c, double radius, bool rest) {
+    std::size_t j = 1;
+    const std::size_t n = c[0].size() - 1;
+    while (rest && j < n && c[0][j].sign() == 0 && c[1][j].sign() == 0) ++j;
+    if (rest && j == 1) return false;
+    std::array<Dyadic, 2> direction{c[0][j], c[1][j]};
+    if (j % 2 == 0) direction = {-c[1][j], c[0][j]};
+    // Of direction . derivative: coefficient of h^(k-1), relative to the first that does not
+    // vanish.
+    std::size_t first = 0;
+    double sum = 0.0, leading = 0.0, power = 1.0;
+    for (std::size_t k = 1; k <= n; ++k) {
+      const Dyadic along = direction[0] * c[0][k] + direction[1] * c[1][k];
+      if (first == 0) {
+        if (along.sign() == 0) continue;
+        first = k;
+        leading = static_cast<double>(k) * std::fabs(along.to_double());
+        continue;
+      }
+      power *= radius;
+      sum += static_cast<double>(k) * std::fabs(along.to_double()) * power;
+    }
+    return first % 2 == 1 && leading > sum * (1.0 + 0x1p-40) && leading > 0x1p-900;
+  }
+
+  // ---- Boxes ----
+
+  void process(const Box& start) {
+    std::vector<Box> stack{start};
+    TubeSearch on_b(*exact_a_, *exact_b_, false, nodes_, resolution_);
+    TubeSearch on_a(*exact_b_, *exact_a_, true, nodes_, resolution_);
+    while (!stack.empty()) {
+      const Box box = stack.back();
+      stack.pop_back();
+      if (--nodes_ < 0) {
+        resolution_.undecided.push_back(
+            {box.s0, box.s1, box.t0, box.t1, "more work than allowed"});
+        continue;
+      }
+      if (apart(box)) continue;
+      bool near_diagonal = false;
+      if (map_) {
+        const Diagonal where = diagonal(box);
+        if (where == Diagonal::alone) continue;
+        near_diagonal = where == Diagonal::unclear;
+      }
+      if (!near_diagonal) {
+        if (on_b.graph(box.t0, box.t1)) {
+          on_b.run(box.s0, box.s1);
+          continue;
+        }
+        if (on_a.graph(box.s0, box.s1)) {
+          on_a.run(box.t0, box.t1);
+          continue;
+        }
+      }
+      if (box.depth == deepest) {
+        resolution_.undecided.push_back({box.s0, box.s1, box.t0, box.t1,
+                                         near_diagonal ? "on a curve that coincides and is singular"
+                                                       : "both curves are singular"});
+        continue;
+      }
+      const double s = 0.5 * (box.s0 + box.s1), t = 0.5 * (box.t0 + box.t1);
+      const int depth = box.depth + 1;
+      stack.push_back({s, box.s1, t, box.t1, depth});
+      stack.push_back({s, box.s1, box.t0, t, depth});
+      stack.push_back({box.s0, s, t, box.t1, depth});
+      stack.push_back({box.s0, s, box.t0, t, depth});
+    }
+  }
+
+  /// The control points of the parts lie in boxes that are apart, also after rounding.
+  bool apart(const Box& box) const {
+    PointBuffer<max_curve_points> on_a, on_b;
+    const int m = static_cast<int>(a_.size()) - 1, n = static_cast<int>(b_.size()) - 1;
+    if (!(magnitude_ < 0x1p1000)) return false;
+    restrict_curve(m, a_.data(), box.s0, box.s1, on_a.data());
+    restrict_curve(n, b_.data(), box.t0, box.t1, on_b.data());
+    const Box2 p = control_box(m, on_a.data()), q = control_box(n, on_b.data());
+    const double room = 8.0 * (m + n + 2) * u * magnitude_ + 0x1p-1060;
+    return p.lo.x() > q.hi.x() + room || q.lo.x() > p.hi.x() + room || p.lo.y() > q.hi.y() + room ||
+           q.lo.y() > p.hi.y() + room;
+  }
+
+  // ---- The answer ----
+
+  void report() {
+    const int m = static_cast<int>(a_.size()) - 1, n = static_cast<int>(b_.size()) - 1;
+    for (const ResolvedRoot& root : resolution_.roots) {
+      if (root.order != 1 && !root.s_end && !root.t_end) {
+        out_.tangencies.push_back({root.s, root.t, root.order});
+        continue;
+      }
+      const CurvePoint p = curve_point(m, a_.data(), root.s), q = curve_point(n, b_.data(), root.t);
+      Crossing c{};
+      c.s = root.s;
+      c.t = root.t;
+      c.s_lo = std::min(root.s_lo, root.s);
+      c.s_hi = std::max(root.s_hi, root.s);
+      c.t_lo = std::min(root.t_lo, root.t);
+      c.t_hi = std::max(root.t_hi, root.t);
+      c.certified = true;
+      c.sign = root.sign;
+      c.point_a = root.s == 0.0 ? a_.front() : root.s == 1.0 ? a_.back() : p.value;
+      c.point_b = root.t == 0.0 ? b_.front() : root.t == 1.0 ? b_.back() : q.value;
+      const double fast = std::max(norm(p.derivative), norm(q.derivative));
+      double turn = std::fabs(cross(p.derivative, q.derivative));
+      if (root.turn > 0.0) turn = std::ldexp(root.turn, static_cast<int>(2 * exponent_));
+      c.condition = root.sign != 0 && turn > 0.0 ? magnitude_ * fast / turn
+                                                 : std::numeric_limits<double>::infinity();
+      out_.crossings.push_back(c);
+    }
+    const auto earlier = [](const auto& p, const auto& q) {
+      return p.s != q.s ? p.s < q.s : p.t < q.t;
+    };
+    std::sort(out_.crossings.begin(), out_.crossings.end(), earlier);
+    std::sort(out_.tangencies.begin(), out_.tangencies.end(), earlier);
+    for (const Undecided& box : resolution_.undecided) {
+      bool joined = false;
+      for (UnresolvedBox& known : out_.unresolved) {
+        if (box.s0 > known.s_hi || known.s_lo > box.s1 || box.t0 > known.t_hi ||
+            known.t_lo > box.t1)
+          continue;
+        known = {std::min(known.s_lo, box.s0), std::max(known.s_hi, box.s1),
+                 std::min(known.t_lo, box.t0), std::max(known.t_hi, box.t1), known.reason};
+        joined = true;
+        break;
+      }
+      if (!joined) out_.unresolved.push_back({box.s0, box.s1, box.t0, box.t1, box.reason});
+    }
+  }
+
+  std::span<const Vec2> a_, b_;
+  CurveIntersections& out_;
+  double magnitude_ = 0.0;
+  std::int64_t exponent_ = 0;
+  Isolation isolation_;
+  Resolution resolution_;
+  std::optional<ExactCurve> exact_a_, exact_b_;
+  std::optional<CoincidenceMap> map_;
+  int nodes_ = 0;
+};
+
+}  // namespace
+
+CoincidenceMap::CoincidenceMap(const ExactContact& contact, const AffineChange& change)
+    : s_(contact.s), t_(contact.t), p_(change.p), q_(change.q) {
+  if (q_.sign() < 0) {
+    p_ = -p_;
+    q_ = -q_;
+  }
+}
+
+// t + (p / q) (s - s0)
+Ratio CoincidenceMap::forward(const Ratio& s) const {
+  return {t_.num * q_ * s.den * s_.den + p_ * t_.den * (s.num * s_.den - s_.num * s.den),
+          t_.den * q_ * s.den * s_.den};
+}
+
+Ratio CoincidenceMap::backward(const Ratio& t) const {
+  const bool negative = p_.sign() < 0;
+  const Dyadic p = negative ? -p_ : p_, q = negative ? -q_ : q_;
+  return {s_.num * p * t.den * t_.den + q * s_.den * (t.num * t_.den - t_.num * t.den),
+          s_.den * p * t.den * t_.den};
+}
+
+void CoincidenceMap::image(double s0, double s1, double& lo, double& hi) const {
+  const Ratio from = forward({Dyadic(s0)}), to = forward({Dyadic(s1)});
+  lo = quotient(from.num, from.den);
+  hi = quotient(to.num, to.den);
+  if (lo > hi) std::swap(lo, hi);
+  const double room = 8.0 * u * std::max(std::fabs(lo), std::fabs(hi)) + 0x1p-1000;
+  lo -= room;
+  hi += room;
+}
+
+void intersect_exactly(std::span<const Vec2> a, std::span<const Vec2> b, CurveIntersections& out) {
+  Search(a, b, out).run();
+}
+
+}  // namespace bezel::geometry_kernel
