@@ -15,36 +15,46 @@ std::size_t at(int i) {
 }
 
 /// c becomes the coefficients about `centre`.
-void shift(std::vector<Dyadic>& c, const Dyadic& centre) {
+void shift(Polynomial& c, const Dyadic& centre) {
   const std::size_t n = c.size() - 1;
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t k = n; k-- > i;) c[k] += centre * c[k + 1];
 }
 
-void trim(std::vector<Dyadic>& c) {
+void trim(Polynomial& c) {
   while (!c.empty() && c.back().sign() == 0) c.pop_back();
 }
 
-Dyadic value(const std::vector<Dyadic>& c, const Dyadic& x) {
+Dyadic value(const Polynomial& c, const Dyadic& x) {
   Dyadic h;
   for (std::size_t k = c.size(); k-- > 0;) h = h * x + c[k];
   return h;
 }
 
-/// Magnitude of a product of double polynomials, truncated to `size` coefficients.
-std::vector<double> product(const std::vector<double>& a, const std::vector<double>& b,
-                            std::size_t size) {
-  std::vector<double> out(std::min(size, a.size() + b.size() - 1), 0.0);
-  for (std::size_t i = 0; i < a.size(); ++i)
-    for (std::size_t k = 0; k < b.size() && i + k < out.size(); ++k) out[i + k] += a[i] * b[k];
+}  // namespace
+
+Polynomial product(const Polynomial& a, const Polynomial& b) {
+  Polynomial out(a.size() + b.size() - 1);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i].sign() == 0) continue;
+    for (std::size_t k = 0; k < b.size(); ++k)
+      if (b[k].sign() != 0) out[i + k] += a[i] * b[k];
+  }
   return out;
 }
 
-}  // namespace
+Polynomial compose(const Polynomial& f, const Polynomial& g) {
+  Polynomial out{f.back()};
+  for (std::size_t k = f.size() - 1; k-- > 0;) {
+    out = product(out, g);
+    out[0] += f[k];
+  }
+  return out;
+}
 
 ExactCurve::ExactCurve(std::span<const Vec2> control, std::int64_t exponent) {
   for (int axis = 0; axis < 2; ++axis) {
-    std::vector<Dyadic> b;
+    Polynomial b;
     for (const Vec2& p : control) b.push_back(Dyadic(p[axis]).scaled(-exponent));
     const bernstein::ExactPolynomial polynomial{std::span<const Dyadic>(b)};
     c_[at(axis)].assign(polynomial.monomial().begin(), polynomial.monomial().end());
@@ -123,23 +133,23 @@ ContactOrder contact_order(const ExactContact& contact, int axis, int limit, dou
   const std::size_t x = at(axis), y = 1 - x;
   const ExactTaylor &a = contact.a, &b = contact.b;
   const Dyadic& beta = b[x][1];
-  const auto coefficient = [](const std::vector<Dyadic>& c, std::size_t k) {
+  const auto coefficient = [](const Polynomial& c, std::size_t k) {
     return k < c.size() ? c[k] : Dyadic();
   };
   // With h = beta^2 mu and b's parameter beta theta(mu), b[x] = a[x] reads
   //   theta + sum_{k>=2} b_k beta^(k-2) theta^k = sum a_k beta^(2k-2) mu^k:
   // theta has exact coefficients. delta = a[y] - b[y] in powers of mu follows.
   const std::size_t n = b[x].size() - 1;
-  std::vector<Dyadic> scaled_x{Dyadic(), Dyadic(1.0)}, scaled_y{Dyadic(), b[y][1] * beta};
+  Polynomial scaled_x{Dyadic(), Dyadic(1.0)}, scaled_y{Dyadic(), b[y][1] * beta};
   Dyadic power = 1.0;
   for (std::size_t k = 2; k <= n; ++k) {
     scaled_x.push_back(b[x][k] * power);
     power *= beta;
     scaled_y.push_back(b[y][k] * power * beta);
   }
-  std::vector<std::vector<Dyadic>> theta(n + 1);  // theta[k]: coefficients of theta^k
-  for (auto& t : theta) t.emplace_back();         // all without a constant term
-  Dyadic power_a = 1.0, delta;                    // beta^(2j-2)
+  std::vector<Polynomial> theta(n + 1);    // theta[k]: coefficients of theta^k
+  for (auto& t : theta) t.emplace_back();  // all without a constant term
+  Dyadic power_a = 1.0, delta;             // beta^(2j-2)
   const Dyadic beta_squared = beta * beta;
   int order = 0;
   for (int j = 1; j <= limit; ++j) {
@@ -165,7 +175,8 @@ ContactOrder contact_order(const ExactContact& contact, int axis, int limit, dou
   }
   if (order == 0) return {0, 0.0};
 
-  // In doubles, in units of h: majorants of what stays beyond the order.
+  // In doubles, in units of h and relative to |beta|: what stays of a - b beyond the order, with
+  // all cancellation done exactly.
   constexpr double up = 1.0 + 0x1p-40;
   const auto r = at(order);
   std::vector<double> tau(r + 1, 0.0);  // |coefficients| of b's parameter
@@ -174,28 +185,30 @@ ContactOrder contact_order(const ExactContact& contact, int axis, int limit, dou
     tau[j] = std::fabs(quotient(theta[1][j], divisor)) * up;
     divisor *= beta_squared;
   }
-  // All relative to |beta|.
-  std::array<std::vector<double>, 2> size_a, size_b;
-  for (const std::size_t w : {x, y}) {
-    for (const Dyadic& v : a[w]) size_a[w].push_back(std::fabs(quotient(v, beta)) * up);
+  std::array<std::vector<double>, 2> size_b;
+  for (const std::size_t w : {x, y})
     for (const Dyadic& v : b[w]) size_b[w].push_back(std::fabs(quotient(v, beta)) * up);
-  }
   Dyadic beta_power = beta;  // delta / beta^(2 order) / beta
   for (int j = 0; j < order; ++j) beta_power *= beta_squared;
   const double leading = std::fabs(quotient(delta, beta_power)) / up;
-  const std::size_t full = std::max(size_a[0].size(), n * r + 1);
+  const Polynomial path(theta[1].begin(), theta[1].begin() + static_cast<std::ptrdiff_t>(r + 1));
   std::array<std::vector<double>, 2> rest;
   for (const std::size_t w : {x, y}) {
-    std::vector<double> composed{size_b[w][n]};
-    for (std::size_t k = n; k-- > 1;) {
-      composed = product(composed, tau, full);
-      composed[0] += size_b[w][k];
+    Polynomial c = compose(w == x ? scaled_x : scaled_y, path);
+    if (c.size() < a[w].size()) c.resize(a[w].size());
+    // In mu; that of x is divided by beta^2.
+    Dyadic factor = w == x ? Dyadic(1.0) : beta_squared;
+    divisor = w == x ? beta : beta * beta_squared;  // beta^(2j+1), less 2 for x
+    rest[w].assign(c.size(), 0.0);
+    for (std::size_t j = 1; j < c.size(); ++j) {
+      if (j > r) {
+        Dyadic v = -c[j];
+        if (j < a[w].size()) v += a[w][j] * factor;
+        rest[w][j] = std::fabs(quotient(v, divisor)) * up;
+      }
+      factor *= beta_squared;
+      divisor *= beta_squared;
     }
-    composed = product(composed, tau, full);
-    composed.resize(full, 0.0);
-    for (std::size_t j = 0; j < size_a[w].size(); ++j) composed[j] += size_a[w][j];
-    for (std::size_t j = 0; j <= r; ++j) composed[j] = 0.0;
-    rest[w] = composed;
   }
   const auto sum = [up](const std::vector<double>& c, double h, std::size_t from) {
     double s = 0.0;
@@ -208,27 +221,26 @@ ContactOrder contact_order(const ExactContact& contact, int axis, int limit, dou
     const double off_power = off * std::pow(h, static_cast<double>(r + 1));
     const double t = 2.0 * (sum(tau, h, 0) + 4.0 * off_power);  // b's parameter stays within
     double speed = 1.0, along_y = 0.0;
-    for (std::size_t k = n; k >= 2; --k) speed -= static_cast<double>(k) * size_b[x][k] *
-                                                  std::pow(t, static_cast<double>(k - 1)) * up;
+    for (std::size_t k = n; k >= 2; --k)
+      speed -= static_cast<double>(k) * size_b[x][k] * std::pow(t, static_cast<double>(k - 1)) * up;
     for (std::size_t k = 1; k <= n; ++k)
       along_y += static_cast<double>(k) * size_b[y][k] * std::pow(t, static_cast<double>(k - 1));
     if (!(speed > 0.25)) continue;
     // |a[x] - b[x]| <= off h^(r+1), so b's parameter is off by w <= off h^(r+1) / speed.
     const double w = off_power / speed * up;
     if (!(sum(tau, h, 0) + w <= t)) continue;
-    if (leading > h * (sum(rest[y], h, r + 1) + along_y * up * off / speed) * up)
-      return {order, h};
+    if (leading > h * (sum(rest[y], h, r + 1) + along_y * up * off / speed) * up) return {order, h};
   }
   return {order, 0.0};
 }
 
-std::optional<bool> common_root(std::vector<Dyadic> f, std::vector<Dyadic> g, const Dyadic& lo,
-                                const Dyadic& hi) {
+std::optional<bool> common_root(Polynomial f, Polynomial g, const Dyadic& lo, const Dyadic& hi) {
   trim(f);
   trim(g);
   if (f.size() > 13 || g.size() > 13) return std::nullopt;
   while (!g.empty()) {
     if (f.size() < g.size()) std::swap(f, g);
+    if (g.empty()) break;
     // Pseudo-remainder, made small by a power of two.
     while (f.size() >= g.size() && !f.empty()) {
       const Dyadic lead = f.back();

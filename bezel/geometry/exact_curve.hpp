@@ -15,8 +15,13 @@
 namespace bezel::geometry_kernel {
 
 using ExactPoint = std::array<Dyadic, 2>;
-/// Coefficients of 1, h, h^2, ... by coordinate.
-using ExactTaylor = std::array<std::vector<Dyadic>, 2>;
+/// Coefficients of 1, h, h^2, ...; at least one.
+using Polynomial = std::vector<Dyadic>;
+using ExactTaylor = std::array<Polynomial, 2>;  ///< by coordinate
+
+Polynomial product(const Polynomial& a, const Polynomial& b);
+/// f(g).
+Polynomial compose(const Polynomial& f, const Polynomial& g);
 
 class ExactCurve {
  public:
@@ -54,7 +59,7 @@ std::optional<AffineChange> coincide(const ExactContact& contact);
 /// Order of contact and a neighbourhood without another common point. b must be regular there, with
 /// b'[axis] != 0.
 struct ContactOrder {
-  int order;      ///< of a - b in h when b is taken opposite a; 0: not found within the limit
+  int order;        ///< of a - b in h when b is taken opposite a; 0: not found within the limit
   double s_radius;  ///< no other common point with |s - contact.s| <= s_radius and b's parameter in
                     ///< a range where b[axis] is monotone; 0 when none was found
 };
@@ -64,7 +69,6 @@ ContactOrder contact_order(const ExactContact& contact, int axis, int limit, dou
 
 /// Whether both polynomials f and g vanish at one place of [lo, hi], decided by their greatest
 /// common divisor; nothing when undecided (degree above 12).
-std::optional<bool> common_root(std::vector<Dyadic> f, std::vector<Dyadic> g, const Dyadic& lo,
-                                const Dyadic& hi);
+std::optional<bool> common_root(Polynomial f, Polynomial g, const Dyadic& lo, const Dyadic& hi);
 
 }  // namespace bezel::geometry_kernel

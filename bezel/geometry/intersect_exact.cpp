@@ -8,15 +8,23 @@
 
 #include "bezel/geometry/curve_incidence.hpp"
 #include "bezel/geometry/curve_kernel.hpp"
+#include "bezel/geometry/intersect_collinear.hpp"
 
 namespace bezel::geometry_kernel {
 namespace {
 
 constexpr double u = 0x1p-53;
 constexpr int deepest = 40;  // halvings of each curve
+// Roots of a larger condition get exact residuals: the first stage leaves parameters uncertain by
+// 4 u condition, here 2^-31, digits that show in every use of the crossing.
+constexpr double finish_condition = 0x1p20;
 
 bool is_point(std::span<const Vec2> c) {
   return std::all_of(c.begin(), c.end(), [&](const Vec2& p) { return p == c[0]; });
+}
+
+int degree(std::span<const Vec2> c) {
+  return static_cast<int>(c.size()) - 1;
 }
 
 double largest_coordinate(std::span<const Vec2> a, std::span<const Vec2> b) {
@@ -42,23 +50,29 @@ class Search {
 
   void run() {
     magnitude_ = largest_coordinate(a_, b_);
+    near_a_ = a_;
+    near_b_ = b_;
     if (is_point(a_) || is_point(b_)) {
       points();
       return;
     }
     exponent_ = std::ilogb(magnitude_) + 1;
     if (!isolate_scaled()) isolation_.open = {{0.0, 1.0, 0.0, 1.0, 0, 0.5, 0.5}};
-    for (const IsolatedRoot& r : isolation_.roots)
-      resolution_.roots.push_back(
-          {r.s, r.t, r.s_lo, r.s_hi, r.t_lo, r.t_hi, 1, r.sign, 0.0, false, false});
+    for (const IsolatedRoot& r : isolation_.roots) {
+      // Ill-conditioned ones are computed again: exactly.
+      if (condition(r) <= finish_condition)
+        resolution_.roots.push_back(
+            {r.s, r.t, r.s_lo, r.s_hi, r.t_lo, r.t_hi, 1, r.sign, 0.0, false, false});
+      else
+        isolation_.open.push_back({r.s_lo, r.s_hi, r.t_lo, r.t_hi, r.sign, r.s, r.t});
+    }
     if (!isolation_.open.empty()) {
-      const int m = static_cast<int>(a_.size()) - 1, n = static_cast<int>(b_.size()) - 1;
-      nodes_ = std::max(64, 40000 / (m * n));
+      nodes_ = allowed_nodes();
       exact_a_.emplace(a_, exponent_);
       exact_b_.emplace(b_, exponent_);
       for (const OpenBox& box : isolation_.open)
         if (box.sign != 0) border(box);
-      parallel();
+      if (parallel()) return;
     }
     report();
   }
@@ -101,25 +115,57 @@ class Search {
 
   // ---- The first stage ----
 
-  /// False when coordinates that differ by more than doubles hold cannot be scaled exactly.
+  /// False when coordinates that differ by more than doubles hold cannot be scaled exactly. From
+  /// then on `near_a_` and `near_b_` are what doubles can be used with.
   bool isolate_scaled() {
-    if (exponent_ > -300 && exponent_ < 300) {
-      isolate(a_, b_, isolation_);
-      return true;
+    unit_ = exponent_;
+    bool exact = true;
+    if (exponent_ <= -300 || exponent_ >= 300) {
+      const auto scaled = [&](std::span<const Vec2> c) {
+        std::vector<Vec2> out(c.begin(), c.end());
+        for (Vec2& p : out)
+          for (int x = 0; x < 2; ++x) {
+            const double before = p[x];
+            p[x] = std::ldexp(before, static_cast<int>(-exponent_));
+            exact = exact && std::ldexp(p[x], static_cast<int>(exponent_)) == before;
+          }
+        return out;
+      };
+      scaled_a_ = scaled(a_);
+      scaled_b_ = scaled(b_);
+      near_a_ = scaled_a_;
+      near_b_ = scaled_b_;
+      unit_ = 0;
+      magnitude_ = std::ldexp(magnitude_, static_cast<int>(-exponent_));
     }
-    std::vector<Vec2> a(a_.begin(), a_.end()), b(b_.begin(), b_.end());
-    for (auto* c : {&a, &b})
-      for (Vec2& p : *c)
-        for (int x = 0; x < 2; ++x) {
-          const double scaled = std::ldexp(p[x], static_cast<int>(-exponent_));
-          if (std::ldexp(scaled, static_cast<int>(exponent_)) != p[x]) return false;
-          p[x] = scaled;
-        }
-    isolate(a, b, isolation_);
-    return true;
+    if (exact) isolate(near_a_, near_b_, isolation_);
+    return exact;
   }
 
-  /// A simple root close to the border of [0, 1]^2.
+  /// Work allowed: less where exact numbers are long, for high degrees and where the coordinates'
+  /// exponents are far apart.
+  int allowed_nodes() const {
+    int largest = -2000, smallest = 2000;
+    for (const auto& c : {a_, b_})
+      for (const Vec2& p : c)
+        for (int x = 0; x < 2; ++x)
+          if (p[x] != 0.0) {
+            largest = std::max(largest, std::ilogb(p[x]));
+            smallest = std::min(smallest, std::ilogb(p[x]));
+          }
+    const double spread = std::max(0, largest - smallest - 40) / 64.0;
+    const double nodes = 20000.0 / (degree(a_) * degree(b_) * (1.0 + spread * spread));
+    return std::max(64, static_cast<int>(nodes));
+  }
+
+  double condition(const IsolatedRoot& r) const {
+    const CurvePoint p = curve_point(degree(a_), near_a_.data(), r.s);
+    const CurvePoint q = curve_point(degree(b_), near_b_.data(), r.t);
+    const double turn = std::fabs(cross(p.derivative, q.derivative));
+    return magnitude_ * std::max(norm(p.derivative), norm(q.derivative)) / turn;
+  }
+
+  /// A simple root close to the border of [0, 1]^2, or ill-conditioned.
   void border(const OpenBox& box) {
     // A common end point is the root.
     for (const int i : {0, 1})
@@ -140,16 +186,24 @@ class Search {
 
   // ---- Nearly parallel pieces ----
 
-  void parallel() {
+  /// True when the answer is complete.
+  bool parallel() {
     std::vector<Box> boxes;
     for (const OpenBox& box : isolation_.open)
       if (box.sign == 0) boxes.push_back({box.s0, box.s1, box.t0, box.t1, 0});
-    if (boxes.empty()) return;
+    if (boxes.empty()) return false;
     for (const Box& box : boxes)
       if (find_coincidence(box)) break;
-    if (map_) report_overlap();
-    if (!map_) join(boxes);
+    if (map_) {
+      report_overlap();
+    } else if (collinear(a_, b_)) {
+      intersect_collinear(a_, b_, out_);
+      return true;
+    } else {
+      join(boxes);
+    }
     for (const Box& box : boxes) process(box);
+    return false;
   }
 
   /// Boxes that touch become one where one of the curves is a graph over the whole.
@@ -183,13 +237,15 @@ class Search {
     for (const int i : {0, 1}) {
       for (const double x : {0.5, 0.0, 1.0}) {
         if (touches(i, box.s0, box.s1)) {
-          const auto t = foot(*exact_b_, b_, (*exact_a_)(end(i)), i == 0 ? a_.front() : a_.back(),
-                              box.t0 + x * (box.t1 - box.t0));
+          const auto t =
+              foot(*exact_b_, near_b_, (*exact_a_)(end(i)),
+                   i == 0 ? near_a_.front() : near_a_.back(), box.t0 + x * (box.t1 - box.t0));
           if (t && try_map({end(i)}, *t)) return true;
         }
         if (touches(i, box.t0, box.t1)) {
-          const auto s = foot(*exact_a_, a_, (*exact_b_)(end(i)), i == 0 ? b_.front() : b_.back(),
-                              box.s0 + x * (box.s1 - box.s0));
+          const auto s =
+              foot(*exact_a_, near_a_, (*exact_b_)(end(i)),
+                   i == 0 ? near_b_.front() : near_b_.back(), box.s0 + x * (box.s1 - box.s0));
           if (s && try_map(*s, {end(i)})) return true;
         }
       }
@@ -210,7 +266,7 @@ class Search {
   /// `start`.
   std::optional<Ratio> foot(const ExactCurve& curve, std::span<const Vec2> control,
                             const ExactPoint& p, const Vec2& rounded, double start) {
-    const int d = static_cast<int>(control.size()) - 1;
+    const int d = degree(control);
     double near = start;
     for (int i = 0; i < 40; ++i) {
       const CurvePoint f = curve_point(d, control.data(), near, rounded);
@@ -224,13 +280,14 @@ class Search {
     if (!(norm(f.value) <= 0x1p-40 * magnitude_)) return std::nullopt;
     // Exactly: simple fractions are found at once, others after a few steps.
     Dyadic t(near);
-    const double scale = std::ldexp(1.0, static_cast<int>(-exponent_));
+    const double scale = std::ldexp(1.0, static_cast<int>(-unit_));
     const Vec2 slope = scale * f.derivative;
     double step = 0.0;
     for (int i = 0; i < 12; ++i) {
       const ExactPoint q = curve(t);
       const Vec2 off{{(p[0] - q[0]).to_double(), (p[1] - q[1]).to_double()}};
       step = dot(off, slope) / dot(slope, slope);
+      if (!std::isfinite(step)) return std::nullopt;
       if (step == 0.0) break;
       t += Dyadic(step);
       if (std::fabs(step) < 0x1p-330) break;
@@ -280,8 +337,7 @@ class Search {
     if (one_way(exact_b_->taylor(Dyadic(centre)), radius, false)) return Diagonal::alone;
     const auto cusp = simplest_between(Dyadic(std::max(lo, 0.0)), Dyadic(std::max(hi, 0.0)), 30);
     if (cusp && cusp->den == Dyadic(1.0)) return Diagonal::unclear;
-    const ExactTaylor at_cusp =
-        exact_b_->taylor(cusp.value_or(Ratio{Dyadic(centre)}));
+    const ExactTaylor at_cusp = exact_b_->taylor(cusp.value_or(Ratio{Dyadic(centre)}));
     if (one_way(at_cusp, 2.0 * radius, true)) return Diagonal::alone;
     return Diagonal::unclear;
   }
@@ -323,8 +379,7 @@ class Search {
       const Box box = stack.back();
       stack.pop_back();
       if (--nodes_ < 0) {
-        resolution_.undecided.push_back(
-            {box.s0, box.s1, box.t0, box.t1, "more work than allowed"});
+        resolution_.undecided.push_back({box.s0, box.s1, box.t0, box.t1, "more work than allowed"});
         continue;
       }
       if (apart(box)) continue;
@@ -362,10 +417,9 @@ class Search {
   /// The control points of the parts lie in boxes that are apart, also after rounding.
   bool apart(const Box& box) const {
     PointBuffer<max_curve_points> on_a, on_b;
-    const int m = static_cast<int>(a_.size()) - 1, n = static_cast<int>(b_.size()) - 1;
-    if (!(magnitude_ < 0x1p1000)) return false;
-    restrict_curve(m, a_.data(), box.s0, box.s1, on_a.data());
-    restrict_curve(n, b_.data(), box.t0, box.t1, on_b.data());
+    const int m = degree(a_), n = degree(b_);
+    restrict_curve(m, near_a_.data(), box.s0, box.s1, on_a.data());
+    restrict_curve(n, near_b_.data(), box.t0, box.t1, on_b.data());
     const Box2 p = control_box(m, on_a.data()), q = control_box(n, on_b.data());
     const double room = 8.0 * (m + n + 2) * u * magnitude_ + 0x1p-1060;
     return p.lo.x() > q.hi.x() + room || q.lo.x() > p.hi.x() + room || p.lo.y() > q.hi.y() + room ||
@@ -374,14 +428,21 @@ class Search {
 
   // ---- The answer ----
 
+  /// Of the curves used in doubles, as a point of the given ones.
+  Vec2 scaled(const Vec2& p) const {
+    const int e = static_cast<int>(exponent_ - unit_);
+    return e == 0 ? p : Vec2{{std::ldexp(p.x(), e), std::ldexp(p.y(), e)}};
+  }
+
   void report() {
-    const int m = static_cast<int>(a_.size()) - 1, n = static_cast<int>(b_.size()) - 1;
+    const int m = degree(a_), n = degree(b_);
     for (const ResolvedRoot& root : resolution_.roots) {
       if (root.order != 1 && !root.s_end && !root.t_end) {
         out_.tangencies.push_back({root.s, root.t, root.order});
         continue;
       }
-      const CurvePoint p = curve_point(m, a_.data(), root.s), q = curve_point(n, b_.data(), root.t);
+      const CurvePoint p = curve_point(m, near_a_.data(), root.s);
+      const CurvePoint q = curve_point(n, near_b_.data(), root.t);
       Crossing c{};
       c.s = root.s;
       c.t = root.t;
@@ -391,11 +452,11 @@ class Search {
       c.t_hi = std::max(root.t_hi, root.t);
       c.certified = true;
       c.sign = root.sign;
-      c.point_a = root.s == 0.0 ? a_.front() : root.s == 1.0 ? a_.back() : p.value;
-      c.point_b = root.t == 0.0 ? b_.front() : root.t == 1.0 ? b_.back() : q.value;
+      c.point_a = root.s == 0.0 ? a_.front() : root.s == 1.0 ? a_.back() : scaled(p.value);
+      c.point_b = root.t == 0.0 ? b_.front() : root.t == 1.0 ? b_.back() : scaled(q.value);
       const double fast = std::max(norm(p.derivative), norm(q.derivative));
       double turn = std::fabs(cross(p.derivative, q.derivative));
-      if (root.turn > 0.0) turn = std::ldexp(root.turn, static_cast<int>(2 * exponent_));
+      if (root.turn > 0.0) turn = std::ldexp(root.turn, static_cast<int>(2 * unit_));
       c.condition = root.sign != 0 && turn > 0.0 ? magnitude_ * fast / turn
                                                  : std::numeric_limits<double>::infinity();
       out_.crossings.push_back(c);
@@ -421,9 +482,12 @@ class Search {
   }
 
   std::span<const Vec2> a_, b_;
+  std::span<const Vec2> near_a_, near_b_;  // the same, or scaled to coordinates below 1
+  std::vector<Vec2> scaled_a_, scaled_b_;
   CurveIntersections& out_;
-  double magnitude_ = 0.0;
-  std::int64_t exponent_ = 0;
+  double magnitude_ = 0.0;     // largest |coordinate| of near_a_ and near_b_
+  std::int64_t exponent_ = 0;  // the exact curves are a_ and b_ times 2^-exponent_
+  std::int64_t unit_ = 0;      // and near_a_ and near_b_ times 2^-unit_
   Isolation isolation_;
   Resolution resolution_;
   std::optional<ExactCurve> exact_a_, exact_b_;

@@ -42,6 +42,11 @@ struct Isolation {
 /// @param a, b   control points, 1 to 61 each, checked by the caller: finite, the largest
 ///               coordinate of both between 2^-300 and 2^300
 /// @param out    cleared first; its storage is reused
+/// @accuracy roots: largest seen 1.5 u condition at degrees 1 to 6
+/// @cost     bounded: 2000 boxes, 24 halvings of a curve
+/// @limits   near-parallel pieces and cusps are left open; for degrees above 20 roots within 2^-40 or
+///           so of a multiple of 2^-k may be
+/// @source   docs/methods/geometry.md, "Isolating common points"
 void isolate(std::span<const Vec2> a, std::span<const Vec2> b, Isolation& out);
 
 }  // namespace bezel::geometry_kernel

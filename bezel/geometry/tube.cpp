@@ -17,30 +17,8 @@ constexpr int most_halvings = 60;
 constexpr double smallest_radius = 0x1p-200;
 constexpr int most_order = 100;  // of contact, looked for
 
-using Polynomial = std::vector<Dyadic>;
-
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
-}
-
-Polynomial product(const Polynomial& a, const Polynomial& b) {
-  Polynomial out(a.size() + b.size() - 1);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (a[i].sign() == 0) continue;
-    for (std::size_t k = 0; k < b.size(); ++k)
-      if (b[k].sign() != 0) out[i + k] += a[i] * b[k];
-  }
-  return out;
-}
-
-/// f(phi), phi without a constant term.
-Polynomial compose(const Polynomial& f, const Polynomial& phi) {
-  Polynomial out{f.back()};
-  for (std::size_t k = f.size() - 1; k-- > 0;) {
-    out = product(out, phi);
-    out[0] += f[k];
-  }
-  return out;
 }
 
 std::vector<double> rounded(const Polynomial& p) {
@@ -59,6 +37,13 @@ double majorant(const std::vector<double>& c, double h, std::size_t first = 0) {
 double derivative_majorant(const std::vector<double>& c, double h) {
   double sum = 0.0;
   for (std::size_t k = c.size(); k-- > 1;) sum = sum * h + static_cast<double>(k) * std::fabs(c[k]);
+  return sum * up;
+}
+
+double second_derivative_majorant(const std::vector<double>& c, double h) {
+  double sum = 0.0;
+  for (std::size_t k = c.size(); k-- > 2;)
+    sum = sum * h + static_cast<double>(k * (k - 1)) * std::fabs(c[k]);
   return sum * up;
 }
 
@@ -102,8 +87,7 @@ void Resolution::add(const ResolvedRoot& root) {
     return p.s >= box.s_lo && p.s <= box.s_hi && p.t >= box.t_lo && p.t <= box.t_hi;
   };
   for (ResolvedRoot& known : roots)
-    if ((known.s == root.s && known.t == root.t) ||
-        (inside(known, root) && inside(root, known))) {
+    if ((known.s == root.s && known.t == root.t) || (inside(known, root) && inside(root, known))) {
       if (root.s_end || root.t_end) known = root;
       return;
     }
@@ -128,13 +112,6 @@ bool TubeSearch::graph(double t0, double t1) {
   slowest_ = first / up - (derivative_majorant(main, t_radius_) - first);
   if (!(slowest_ > 0.3 * first) || !(first > 0x1p-400)) return false;
   speed_ = std::hypot(derivative_majorant(x, t_radius_), derivative_majorant(y, t_radius_)) * up;
-  const auto second = [&](const std::vector<double>& c) {
-    double sum = 0.0;
-    for (std::size_t k = c.size(); k-- > 2;)
-      sum = sum * t_radius_ + static_cast<double>(k * (k - 1)) * std::fabs(c[k]);
-    return sum * up;
-  };
-  bend_ = std::hypot(second(x), second(y)) * up;
   x_lo_ = b_(Dyadic(t0))[at(axis_)];
   x_hi_ = b_(Dyadic(t1))[at(axis_)];
   if (x_hi_ < x_lo_) std::swap(x_lo_, x_hi_);
@@ -197,8 +174,7 @@ bool TubeSearch::build(const Node& node, const ExactTaylor& a, const Dyadic& opp
   model.phi = {0.0, p1};
   if (order > 1) {
     const double p2 = (get(ax, 2) - get(bx, 2) * p1 * p1) / bx[1];
-    const double p3 =
-        (get(ax, 3) - get(bx, 3) * p1 * p1 * p1 - 2.0 * get(bx, 2) * p1 * p2) / bx[1];
+    const double p3 = (get(ax, 3) - get(bx, 3) * p1 * p1 * p1 - 2.0 * get(bx, 2) * p1 * p2) / bx[1];
     model.phi.push_back(p2);
     model.phi.push_back(p3);
   }
@@ -208,7 +184,10 @@ bool TubeSearch::build(const Node& node, const ExactTaylor& a, const Dyadic& opp
   const double off_centre = std::fabs((opposite - Dyadic(t_centre_)).to_double()) * up;
   if (!(off_centre + reach <= t_radius_)) return false;
 
-  const Polynomial phi(model.phi.begin(), model.phi.end());
+  Polynomial phi(model.phi.begin(), model.phi.end());
+  // Short intervals ask for more digits of the slope than a double has.
+  if (h < 0x1p-30 && a[x].size() > 1)
+    phi[1] += Dyadic((a[x][1] - b[x][1] * phi[1]).to_double() / bx[1]);
   const auto difference = [&](std::size_t axis) {
     Polynomial c = compose(b[axis], phi);
     if (c.size() < a[axis].size()) c.resize(a[axis].size());
@@ -217,25 +196,31 @@ bool TubeSearch::build(const Node& node, const ExactTaylor& a, const Dyadic& opp
     return c;
   };
   const Polynomial cx = difference(x), cy = difference(y);
-  const auto speed = [&](std::size_t axis) {
+  const auto velocity = [&](std::size_t axis) {
     Polynomial d;
     for (std::size_t k = 1; k < b[axis].size(); ++k)
       d.push_back(b[axis][k] * Dyadic(static_cast<double>(k)));
     return compose(d, phi);
   };
-  Polynomial e = product(speed(x), cy);
-  const Polynomial other = product(speed(y), cx);
+  Polynomial e = product(velocity(x), cy);
+  const Polynomial other = product(velocity(y), cx);
   for (std::size_t k = 0; k < e.size(); ++k) e[k] -= other[k];
 
   const double size_x = majorant(rounded(cx), h), size_y = majorant(rounded(cy), h);
   model.width = size_x / slowest_ * up;
   // b's parameter must stay where b is known to be a graph: then one is opposite to every s.
   if (!(off_centre + reach + model.width <= t_radius_)) return false;
-  model.remainder = 0.5 * model.width * model.width * speed_ * bend_ * up;
+  const auto by = rounded(b[y]);
+  const double room = reach + model.width;
+  const double speed =
+      std::hypot(derivative_majorant(bx, room), derivative_majorant(by, room)) * up;
+  const double bend =
+      std::hypot(second_derivative_majorant(bx, room), second_derivative_majorant(by, room)) * up;
+  model.remainder = 0.5 * model.width * model.width * speed * bend * up;
   const double a_speed = std::hypot(derivative_majorant(ax, h), derivative_majorant(ay, h)) * up;
   model.derivative_remainder =
       (derivative_majorant(model.phi, h) * std::hypot(size_x, size_y) + model.width * a_speed) *
-      bend_ * up;
+      bend * up;
   model.e = rounded(e);
   double power = 1.0, sum = 0.0;
   for (double& c : model.e) {
@@ -350,8 +335,8 @@ void TubeSearch::examine(const Node& node, const Model& model, const Suspect& su
         if (std::fabs(step) <= 0x1p-52) break;
       }
       const double sigma = node.h * (middle + radius * z);
-      const double error = node.h * radius * ((threshold + std::fabs(value(q, z))) / slope) * up +
-                           0x1p-50 * node.h;
+      const double error =
+          node.h * radius * ((threshold + std::fabs(value(q, z))) / slope) * up + 0x1p-50 * node.h;
       const double phi = value(model.phi, sigma);
       const double t_error = (model.width + derivative_majorant(model.phi, node.h) * error) * up +
                              0x1p-50 * std::fabs(phi);

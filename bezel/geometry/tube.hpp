@@ -19,9 +19,9 @@ namespace bezel::geometry_kernel {
 struct ResolvedRoot {
   double s, t;
   double s_lo, s_hi, t_lo, t_hi;  ///< no other common point in this box
-  int order;      ///< multiplicity: 1 transversal; 0: at a verified place, its order not found
-  int sign;       ///< of cross(a', b') when the order is 1
-  double turn;    ///< |cross(a', b')|, of the scaled curves
+  int order;          ///< multiplicity: 1 transversal; 0: at a verified place, its order not found
+  int sign;           ///< of cross(a', b') when the order is 1
+  double turn;        ///< |cross(a', b')|, of the scaled curves
   bool s_end, t_end;  ///< s or t is exactly 0 or 1
 };
 
@@ -91,8 +91,8 @@ class TubeSearch {
   int axis_ = 0;
   double s0_ = 0, s1_ = 0, t0_ = 0, t1_ = 0;
   double t_centre_ = 0, t_radius_ = 0;
-  double slowest_ = 0, speed_ = 0, bend_ = 0;  // of b on the enlarged interval
-  Dyadic x_lo_, x_hi_;                         // range of b[axis] on [t0, t1]
+  double slowest_ = 0, speed_ = 0;  // of b on the enlarged interval
+  Dyadic x_lo_, x_hi_;              // range of b[axis] on [t0, t1]
   std::vector<Node> stack_;
 };
 
