@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "bezel/geometry/isolate_kernel.hpp"
@@ -22,6 +23,7 @@ constexpr int max_work = 2000;  // boxes looked at
 constexpr double max_q = 0.96;
 constexpr double above = 1.0 + 0x1p-40;  // more than the rounding of a few operations
 constexpr double underflow = 0x1p-1060;  // more than a few lost products
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double growth = 1.375;  // of a Bernstein basis over [-3/16, 19/16], for each degree
 
 /// A piece of each curve, and its parameters.
@@ -48,6 +50,14 @@ struct Pieces {
       hi = {larger(hi.x, q.x), larger(hi.y, q.y)};
     }
   }
+};
+
+/// What the edges of a box's control polygons are, times the degree, in terms of the chords: between
+/// along_lo and along_hi times the own chord, and up to `across` times the other.
+struct Basis {
+  Lanes along_lo, along_hi, across;
+  Lanes inverse;  // 1 / cross(chord, other chord)
+  PairVector other_chord;
 };
 
 /// A root or an open box with a sign whose enclosure reaches over the border of the box it was
@@ -92,11 +102,9 @@ class Isolator {
   template <int K>
   unsigned overlapping(const Pieces<Room>* pieces, Lanes error) const;
   bool consider(const Pieces<Room>& first, const Pieces<Room>& second, Box& box);
-  Outcome settle(const Box& box, Lanes start, double q, PairVector other_chord, double inverse,
-                 int sign);
-  Outcome settle_border(const Box& box, double s, double t, double r_s, double r_t, double q,
-                        int sign);
-  bool add(const Straddler& found, double s, double t, int sign, bool straddles, const Box& box);
+  Outcome settle(const Box& box, Lanes start, const Basis& basis);
+  Outcome settle_border(const Box& box, Lanes x, double r, const Basis& basis);
+  bool add(const Straddler& found, double s, double t, const Basis& basis, bool straddles, const Box& box);
   void leave_open(const Box& box) {
     out_.open.push_back({box.lo[0], box.lo[0] + box.width[0], box.lo[1], box.lo[1] + box.width[1],
                          0, box.lo[0] + 0.5 * box.width[0], box.lo[1] + 0.5 * box.width[1]});
@@ -144,58 +152,56 @@ bool Isolator<D, Room>::consider(const Pieces<Room>& first, const Pieces<Room>& 
   const Lanes slack = chord_norm * both(error + 16 * rounding_) + both(underflow);
   if (any(((across_lo - band_hi) > slack) | ((band_lo - across_hi) > slack))) return false;
 
-  // C = [chord_a, -chord_b]^-1; with F = a(s) - b(t) in the pieces' own parameters, q bounds
-  // ||I - C F'|| over the whole box, from the hodographs' control points. In both lanes: twice the
-  // other's chord across the own edges, and the own chord.
+  // The chords as a basis: in the lane of a the edges times the degree are along chord_a - across
+  // chord_b, or with the other sign; in that of b the same with the roles exchanged.
   const PairVector other = swapped(chord);
   const Lanes dets = cross(chord, other);  // det and -det
-  const double det = dets[0];
-  const Lanes factor = degrees_.as_factor();
-  Lanes diagonal = both(0.0), off = both(0.0);
+  const Lanes inverse = both(1.0) / dets;
+  const Lanes factor = degrees_.as_factor() * inverse;
+  Basis basis{both(infinity), both(-infinity), both(0.0), inverse, other};
   for (int i = 0; i < n; ++i) {
-    const Lanes own_across = swapped(across[i] - across[i + 1]);
-    const Lanes own_band = band[i + 1] - band[i];
-    const Lanes on_diagonal = degrees_.where_edge(i, abs(dets - factor * own_across));
-    diagonal = larger(diagonal, on_diagonal);
-    off = larger(off, degrees_.where_edge(i, abs(own_band)));
+    const Lanes along = degrees_.where_edge(i, factor * swapped(across[i] - across[i + 1]), 1.0);
+    basis.along_lo = smaller(basis.along_lo, along);
+    basis.along_hi = larger(basis.along_hi, along);
+    basis.across = larger(basis.across, degrees_.where_edge(i, abs(band[i + 1] - band[i]), 0.0));
   }
   // Of an edge: twice the points' error; of its product with a chord: that of two, and of the
   // difference.
-  const Lanes chords = swapped(chord_norm);
-  const double edges = degrees_.of(0) * (2 * error_a + 12 * rounding_) +
-                       degrees_.of(1) * (2 * error_b + 12 * rounding_);
-  const double q_size = larger(diagonal + swapped(factor * off) + chords * both(edges)) + underflow;
-  const double size = std::fabs(det);
-  // Not q_size >= max_q size: it may be NaN.
-  if (!(q_size < max_q * size)) {
-    // A few more halvings often part curves that pass at a small angle; many open boxes mean that
-    // they run along each other.
-    const std::size_t open = out_.open.size();
-    const int ready = open < 2 ? 8 : open < 4 ? 6 : open < 16 ? 4 : 3;
-    for (int i = 0; i <= n; ++i) box.p.p[i] = joined(pa[i], pb[i]);
-    if (box.depth[0] < ready || box.depth[1] < ready || !nearly_parallel(box, chord)) {
-      const PairVector sides = joined(first.hi, second.hi) - joined(first.lo, second.lo);
-      box.extent = larger(sides.x, sides.y);
-      return true;
+  const Lanes edge_error =
+      abs(factor) * (both(2.0) * box.error + both(12 * rounding_)) * both(above);
+  const Lanes along_error = swapped(chord_norm) * edge_error + both(32 * u);
+  basis.along_lo -= along_error;
+  basis.along_hi += along_error;
+  basis.across = abs(factor) * basis.across + chord_norm * edge_error + both(32 * u);
+  // The cross product of any two edges of a and b has the sign of det: a root is alone. Not the
+  // negation of this: there may be NaN.
+  const bool alone = basis.along_lo[0] > 0 && basis.along_lo[1] > 0 &&
+                     basis.across[0] * basis.across[1] * above <
+                         basis.along_lo[0] * basis.along_lo[1];
+  if (alone) {
+    // Newton's method for the chords instead of the curves, from the middle or a corner.
+    Lanes start;
+    if constexpr (D == 3) {
+      const auto middle = [](const Lanes* c) {
+        return both(0.125) * ((c[0] + c[3]) + both(3.0) * (c[1] + c[2]));
+      };
+      start = both(0.5) + swapped(middle(across) - middle(band)) * inverse;
+    } else {
+      start = swapped(across[0] - band[0]) * inverse;
     }
+    start = smaller(larger(start, both(0.0)), both(1.0));
+    if (settle(box, box.lo + box.width * start, basis) == Outcome::done) return false;
+  }
+  for (int i = 0; i <= n; ++i) box.p.p[i] = joined(pa[i], pb[i]);
+  // A few more halvings often part curves that pass at a small angle. Chords that are parallel to
+  // four digits, or many open boxes, mean that they run along each other.
+  const std::size_t open = out_.open.size();
+  const bool parallel = std::fabs(dets[0]) <= 0x1p-14 * chord_norm[0] * chord_norm[1];
+  const int ready = open >= 16 ? 3 : parallel || open >= 4 ? 4 : open >= 2 ? 7 : 10;
+  if (!alone && box.depth[0] >= ready && box.depth[1] >= ready && nearly_parallel(box, chord)) {
     leave_open(box);
     return false;
   }
-  const double inverse = 1.0 / det, q = q_size * std::fabs(inverse) * above + 32 * u;
-  // Newton's method with C from the middle, or from the lower corner.
-  Lanes start;
-  if constexpr (D == 3) {
-    const auto middle = [](const Lanes* c) {
-      return both(0.125) * ((c[0] + c[3]) + both(3.0) * (c[1] + c[2]));
-    };
-    start = both(0.5) + swapped(middle(across) - middle(band)) * (both(1.0) / dets);
-  } else {
-    start = swapped(across[0] - band[0]) * (both(1.0) / dets);
-  }
-  start = smaller(larger(start, both(0.0)), both(1.0));
-  const Lanes x = box.lo + box.width * start;
-  if (settle(box, x, q, other, inverse, det > 0 ? 1 : -1) == Outcome::done) return false;
-  for (int i = 0; i <= n; ++i) box.p.p[i] = joined(pa[i], pb[i]);
   const PairVector sides = joined(first.hi, second.hi) - joined(first.lo, second.lo);
   box.extent = larger(sides.x, sides.y);
   return true;
@@ -203,58 +209,60 @@ bool Isolator<D, Room>::consider(const Pieces<Room>& first, const Pieces<Room>& 
 
 /// The root of a box that holds at most one.
 template <int D, int Room>
-typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle(const Box& box, Lanes x, double q,
-                                                              PairVector other_chord,
-                                                              double inverse, int sign) {
-  const Lanes lo = box.lo, width = box.width, hi = lo + width;
-  // Of C F: the values' error, (3 d + 1) u extent each, and the products'.
-  const Lanes noise = sum_norm(other_chord) *
-                      both((6 * degrees_.max() + 24) * rounding_ * std::fabs(inverse) * above);
-  const double largest_noise = larger(noise);
-  for (int i = 0; i < 8; ++i) {
+typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle(const Box& box, Lanes x,
+                                                              const Basis& basis) {
+  const Lanes lo = box.lo, hi = lo + box.width;
+  const int d = degrees_.max();
+  // Of F: the values' error, (3 d + 1) u extent each, and of what is computed from it.
+  const double value_error = (6 * d + 24) * rounding_ * above;
+  const double slope_error = 16 * d * d * rounding_;
+  const double bend = 8.0 * d * d * (rounding_ / u);  // bounds |a''| + |b''| on [0, 1]
+  for (int i = 0; i < 7; ++i) {
     const PairTaylor at = expand(degrees_, whole_, x);
     const PairVector f = first_minus_second(at.value);
-    const Lanes chord_step = -(cross(f, other_chord)) * both(inverse);
-    // A root of the box is within r of x, and within q r of x + chord_step.
-    const double r = (larger(abs(chord_step)) + largest_noise) / (1 - q) * above + 8 * u;
-    const Lanes reach = both(r) * width;
+    // On the border, and F shows outward by more than the other curve turns: the root is beyond.
+    const LaneMask at_lo = x <= lo, at_hi = x >= hi;
+    if (any(at_lo | at_hi)) {
+      const Lanes chord_step = cross(f, basis.other_chord) * both(-basis.inverse[0]);
+      const Lanes outward = at_hi ? chord_step : -chord_step;
+      const Lanes noise = abs(basis.inverse) * sum_norm(basis.other_chord) * both(value_error);
+      const LaneMask beyond = swapped(basis.along_lo) * (outward - noise) >
+                              swapped(basis.across) * (swapped(abs(chord_step) + noise)) *
+                                  both(above);
+      if (any((at_lo | at_hi) & beyond)) return Outcome::done;
+    }
     const PairVector other_slope = swapped(at.slope);
-    const double det = cross(at.slope, other_slope)[0];
-    const double local = 1.0 / det;
-    const Lanes newton = -(cross(f, other_slope)) * both(local);
+    const double local = 1.0 / cross(at.slope, other_slope)[0];
+    const Lanes newton = cross(f, other_slope) * both(-local);
     // Two terms more of the inverse function's series.
-    Lanes step = newton;
-    Lanes correction = both(0.0);
+    Lanes step = newton, correction = both(0.0);
     for (int k = 0; k < 2; ++k) {
       const PairVector rest = first_minus_second((step * step) * (at.bend + step * at.twist));
-      correction = -(cross(rest, other_slope)) * both(local);
+      correction = cross(rest, other_slope) * both(-local);
       step = newton + correction;
     }
-    const bool proven = all(((x - reach) > lo) & ((x + reach) < hi));
+    // With C the inverse of the derivative here, ||I - C F'|| <= 1/2 on the ball of radius r.
+    const double norm = larger(sum_norm(other_slope)) * std::fabs(local) * above;
+    const double size = larger(abs(newton)), bent = larger(abs(correction));
+    const double r = (size + norm * value_error) * (2 * above) + 8 * u;
+    const double turn = norm * (r * bend + slope_error);
+    const Lanes low = x - both(r), high = x + both(r);
     const Lanes next = smaller(larger(x + step, lo), hi);
-    if (proven) {
-      const double size = larger(abs(newton)), bent = larger(abs(correction));
+    if (turn < 0.49 && all((low > lo) & (high < hi))) {
       // The next term of the series would be about 5 bent^3 / size^2; without the third derivative
       // some size^3.
-      const bool settled = size < 0x1p-50 || (bent * bent * bent <= 0x1p-60 * (size * size) &&
-                                              (D > 0 || size <= 0x1p-22));
-      if (settled) {
-        const Lanes low = x - reach, high = x + reach;
+      if (size < 0x1p-50 || (bent * bent * bent <= 0x1p-60 * (size * size) &&
+                             (D > 0 || size <= 0x1p-22))) {
         const Lanes found = smaller(larger(x + step, low), high);
         const Straddler enclosure{low[0],  high[0], low[1],  high[1], low[0],
                                   high[0], low[1],  high[1], false,   0};
-        return add(enclosure, found[0], found[1], sign, false, box) ? Outcome::done
-                                                                    : Outcome::split;
+        return add(enclosure, found[0], found[1], basis, false, box) ? Outcome::done
+                                                                     : Outcome::split;
       }
-    } else {
-      const Lanes centre = x + chord_step * width;
-      const Lanes radius =
-          (both(q * r) + noise) * width * both(above) + both(4 * u) * (both(1.0) + abs(chord_step));
-      if (any(((centre - radius) > hi) | ((centre + radius) < lo))) return Outcome::done;
-      const Lanes moved = abs(next - x);
-      if (!(larger(moved) > 0x1p-50)) {
-        return settle_border(box, x[0], x[1], reach[0], reach[1], q, sign);
-      }
+    } else if (!(larger(abs(next - x)) > 0x1p-50)) {
+      // Beyond [0, 1] by 1/64 at most |a''| is at most (1 + 1/32)^58 < 8 times larger.
+      return norm * (8 * r * bend + slope_error) < 0.49 ? settle_border(box, x, r, basis)
+                                                        : Outcome::split;
     }
     if (!all(next == next)) return Outcome::split;
     x = next;
@@ -262,38 +270,38 @@ typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle(const Box& box, La
   return Outcome::split;
 }
 
-/// A root, if any, is within (r_s, r_t) of (s, t), which lies in the box; that reaches over its
-/// border. In the box made larger by 3/16 of its width on each side, q is at most growth^(d-1)
-/// times what it is in the box: C F' is linear in each hodograph.
+/// Exactly one root is within r of x, which lies in the box; that reaches over its border. It is
+/// alone in the box made larger by 3/16 of its width on each side when ||I - C F'|| < 1 there, C the
+/// inverse for the chords: its entries are linear in each hodograph, so that they grow by at most
+/// growth^(d-1).
 template <int D, int Room>
-typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle_border(const Box& box, double s,
-                                                                     double t, double r_s,
-                                                                     double r_t, double q,
-                                                                     int sign) {
+typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle_border(const Box& box, Lanes x,
+                                                                     double r,
+                                                                     const Basis& basis) {
+  const Lanes along = larger(basis.along_hi - both(1.0), both(1.0) - basis.along_lo);
+  double q = larger(along + swapped(basis.across)) * above;
   for (int i = 1; i < degrees_.max(); ++i) q *= growth;
-  if (!(q < max_q)) return Outcome::split;
   const double w_s = box.width[0], w_t = box.width[1];
-  // r was for the box: 1 / (1 - q) is at most 25 now.
-  r_s *= 25;
-  r_t *= 25;
-  if (!(r_s <= w_s / 64 && r_t <= w_t / 64)) return Outcome::split;
-  const Straddler found{s - r_s,
-                        s + r_s,
-                        t - r_t,
-                        t + r_t,
+  if (!(q < max_q && r <= w_s / 64 && r <= w_t / 64)) return Outcome::split;
+  const double s = x[0], t = x[1];
+  const Straddler found{s - r,
+                        s + r,
+                        t - r,
+                        t + r,
                         box.lo[0] - 0.1875 * w_s,
                         box.lo[0] + 1.1875 * w_s,
                         box.lo[1] - 0.1875 * w_t,
                         box.lo[1] + 1.1875 * w_t,
-                        !(s - r_s > 0 && s + r_s < 1 && t - r_t > 0 && t + r_t < 1),
+                        !(s - r > 0 && s + r < 1 && t - r > 0 && t + r < 1),
                         0};
-  return add(found, s, t, sign, true, box) ? Outcome::done : Outcome::split;
+  return add(found, s, t, basis, true, box) ? Outcome::done : Outcome::split;
 }
 
 /// False: it may be one found before, or another; nothing is added then.
 template <int D, int Room>
-bool Isolator<D, Room>::add(const Straddler& found, double s, double t, int sign, bool straddles,
+bool Isolator<D, Room>::add(const Straddler& found, double s, double t, const Basis& basis, bool straddles,
                             const Box& box) {
+  const int sign = basis.inverse[0] > 0 ? 1 : -1;
   if (straddles) {
     if (straddler_count_ == static_cast<int>(straddlers_.size())) {
       leave_open(box);

@@ -112,10 +112,10 @@ struct PairDegrees {
   int degree[2];
   int max() const { return D > 0 ? D : degree[0] > degree[1] ? degree[0] : degree[1]; }
   int of(int lane) const { return D > 0 ? D : degree[lane]; }
-  /// x for the curves of degree above i, 0 for others.
-  Lanes where_edge(int i, Lanes x) const {
+  /// x for the curves of degree above i, `otherwise` for others.
+  Lanes where_edge(int i, Lanes x, double otherwise) const {
     if constexpr (D > 0) return x;
-    return Lanes{i < of(0) ? x[0] : 0.0, i < of(1) ? x[1] : 0.0};
+    return Lanes{i < of(0) ? x[0] : otherwise, i < of(1) ? x[1] : otherwise};
   }
   Lanes as_factor() const { return Lanes{static_cast<double>(of(0)), static_cast<double>(of(1))}; }
 };
@@ -124,7 +124,7 @@ struct PairDegrees {
 template <int D, int Room>
 PairVector edge(const PairDegrees<D>& degrees, const PairPoints<Room>& p, int i) {
   const PairVector e = p.p[i + 1] - p.p[i];
-  return {degrees.where_edge(i, e.x), degrees.where_edge(i, e.y)};
+  return {degrees.where_edge(i, e.x, 0.0), degrees.where_edge(i, e.y, 0.0)};
 }
 
 /// Both curves halved by de Casteljau.
