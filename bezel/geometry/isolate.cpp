@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <vector>
+#include <memory>
 
 #include "bezel/geometry/isolate_kernel.hpp"
 
@@ -52,8 +52,8 @@ struct Pieces {
   }
 };
 
-/// What the edges of a box's control polygons are, times the degree, in terms of the chords: between
-/// along_lo and along_hi times the own chord, and up to `across` times the other.
+/// What the edges of a box's control polygons are, times the degree, in terms of the chords:
+/// between along_lo and along_hi times the own chord, and up to `across` times the other.
 struct Basis {
   Lanes along_lo, along_hi, across;
   Lanes inverse;  // 1 / cross(chord, other chord)
@@ -104,7 +104,8 @@ class Isolator {
   bool consider(const Pieces<Room>& first, const Pieces<Room>& second, Box& box);
   Outcome settle(const Box& box, Lanes start, const Basis& basis);
   Outcome settle_border(const Box& box, Lanes x, double r, const Basis& basis);
-  bool add(const Straddler& found, double s, double t, const Basis& basis, bool straddles, const Box& box);
+  bool add(const Straddler& found, double s, double t, const Basis& basis, bool straddles,
+           const Box& box);
   void leave_open(const Box& box) {
     out_.open.push_back({box.lo[0], box.lo[0] + box.width[0], box.lo[1], box.lo[1] + box.width[1],
                          0, box.lo[0] + 0.5 * box.width[0], box.lo[1] + 0.5 * box.width[1]});
@@ -160,10 +161,12 @@ bool Isolator<D, Room>::consider(const Pieces<Room>& first, const Pieces<Room>& 
   const Lanes factor = degrees_.as_factor() * inverse;
   Basis basis{both(infinity), both(-infinity), both(0.0), inverse, other};
   for (int i = 0; i < n; ++i) {
-    const Lanes along = degrees_.where_edge(i, factor * swapped(across[i] - across[i + 1]), 1.0);
+    const Lanes along =
+        degrees_.where_edge(i, factor * swapped(across[i] - across[i + 1]), both(1.0));
     basis.along_lo = smaller(basis.along_lo, along);
     basis.along_hi = larger(basis.along_hi, along);
-    basis.across = larger(basis.across, degrees_.where_edge(i, abs(band[i + 1] - band[i]), 0.0));
+    basis.across =
+        larger(basis.across, degrees_.where_edge(i, abs(band[i + 1] - band[i]), both(0.0)));
   }
   // Of an edge: twice the points' error; of its product with a chord: that of two, and of the
   // difference.
@@ -175,9 +178,9 @@ bool Isolator<D, Room>::consider(const Pieces<Room>& first, const Pieces<Room>& 
   basis.across = abs(factor) * basis.across + chord_norm * edge_error + both(32 * u);
   // The cross product of any two edges of a and b has the sign of det: a root is alone. Not the
   // negation of this: there may be NaN.
-  const bool alone = basis.along_lo[0] > 0 && basis.along_lo[1] > 0 &&
-                     basis.across[0] * basis.across[1] * above <
-                         basis.along_lo[0] * basis.along_lo[1];
+  const bool alone =
+      basis.along_lo[0] > 0 && basis.along_lo[1] > 0 &&
+      basis.across[0] * basis.across[1] * above < basis.along_lo[0] * basis.along_lo[1];
   if (alone) {
     // Newton's method for the chords instead of the curves, from the middle or a corner.
     Lanes start;
@@ -215,7 +218,7 @@ typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle(const Box& box, La
   const int d = degrees_.max();
   // Of F: the values' error, (3 d + 1) u extent each, and of what is computed from it.
   const double value_error = (6 * d + 24) * rounding_ * above;
-  const double slope_error = 16 * d * d * rounding_;
+  const double slope_error = 32 * d * d * rounding_;  // of both slopes and their product
   const double bend = 8.0 * d * d * (rounding_ / u);  // bounds |a''| + |b''| on [0, 1]
   for (int i = 0; i < 7; ++i) {
     const PairTaylor at = expand(degrees_, whole_, x);
@@ -226,9 +229,9 @@ typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle(const Box& box, La
       const Lanes chord_step = cross(f, basis.other_chord) * both(-basis.inverse[0]);
       const Lanes outward = at_hi ? chord_step : -chord_step;
       const Lanes noise = abs(basis.inverse) * sum_norm(basis.other_chord) * both(value_error);
-      const LaneMask beyond = swapped(basis.along_lo) * (outward - noise) >
-                              swapped(basis.across) * (swapped(abs(chord_step) + noise)) *
-                                  both(above);
+      const LaneMask beyond =
+          swapped(basis.along_lo) * (outward - noise) >
+          swapped(basis.across) * (swapped(abs(chord_step) + noise)) * both(above);
       if (any((at_lo | at_hi) & beyond)) return Outcome::done;
     }
     const PairVector other_slope = swapped(at.slope);
@@ -249,10 +252,10 @@ typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle(const Box& box, La
     const Lanes low = x - both(r), high = x + both(r);
     const Lanes next = smaller(larger(x + step, lo), hi);
     if (turn < 0.49 && all((low > lo) & (high < hi))) {
-      // The next term of the series would be about 5 bent^3 / size^2; without the third derivative
-      // some size^3.
-      if (size < 0x1p-50 || (bent * bent * bent <= 0x1p-60 * (size * size) &&
-                             (D > 0 || size <= 0x1p-22))) {
+      // The next term of the series would be about 5 bent^3 / size^2, but for the fourth
+      // derivative.
+      if (size < 0x1p-50 ||
+          (bent * bent * bent <= 0x1p-60 * (size * size) && (D > 0 || size <= 0x1p-16))) {
         const Lanes found = smaller(larger(x + step, low), high);
         const Straddler enclosure{low[0],  high[0], low[1],  high[1], low[0],
                                   high[0], low[1],  high[1], false,   0};
@@ -271,13 +274,12 @@ typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle(const Box& box, La
 }
 
 /// Exactly one root is within r of x, which lies in the box; that reaches over its border. It is
-/// alone in the box made larger by 3/16 of its width on each side when ||I - C F'|| < 1 there, C the
-/// inverse for the chords: its entries are linear in each hodograph, so that they grow by at most
-/// growth^(d-1).
+/// alone in the box made larger by 3/16 of its width on each side when ||I - C F'|| < 1 there, C
+/// the inverse for the chords: its entries are linear in each hodograph, so that they grow by at
+/// most growth^(d-1).
 template <int D, int Room>
 typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle_border(const Box& box, Lanes x,
-                                                                     double r,
-                                                                     const Basis& basis) {
+                                                                     double r, const Basis& basis) {
   const Lanes along = larger(basis.along_hi - both(1.0), both(1.0) - basis.along_lo);
   double q = larger(along + swapped(basis.across)) * above;
   for (int i = 1; i < degrees_.max(); ++i) q *= growth;
@@ -299,8 +301,8 @@ typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle_border(const Box& 
 
 /// False: it may be one found before, or another; nothing is added then.
 template <int D, int Room>
-bool Isolator<D, Room>::add(const Straddler& found, double s, double t, const Basis& basis, bool straddles,
-                            const Box& box) {
+bool Isolator<D, Room>::add(const Straddler& found, double s, double t, const Basis& basis,
+                            bool straddles, const Box& box) {
   const int sign = basis.inverse[0] > 0 ? 1 : -1;
   if (straddles) {
     if (straddler_count_ == static_cast<int>(straddlers_.size())) {
@@ -494,8 +496,8 @@ void isolate_pair(std::span<const Vec2> a, std::span<const Vec2> b, Isolation& o
     BoxPair<Room> stack[Search::stack_size];
     search.run(whole, stack);
   } else {
-    std::vector<BoxPair<Room>> stack(Search::stack_size);
-    search.run(whole, stack.data());
+    const auto stack = std::make_unique_for_overwrite<BoxPair<Room>[]>(Search::stack_size);
+    search.run(whole, stack.get());
   }
 }
 

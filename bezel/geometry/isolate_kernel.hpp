@@ -44,6 +44,10 @@ inline Lanes larger(Lanes x, Lanes y) {
 inline double larger(Lanes x) {
   return larger(x, swapped(x))[0];
 }
+/// x where m is set, else y.
+inline Lanes where(LaneMask m, Lanes x, Lanes y) {
+  return m ? x : y;
+}
 inline Lanes abs(Lanes x) {
   constexpr long long magnitude = 0x7fffffffffffffff;
   return reinterpret_cast<Lanes>(reinterpret_cast<LaneMask>(x) & LaneMask{magnitude, magnitude});
@@ -82,6 +86,9 @@ inline Lanes cross(PairVector p, PairVector q) {
 inline PairVector swapped(PairVector p) {
   return {swapped(p.x), swapped(p.y)};
 }
+inline PairVector where(LaneMask m, PairVector p, PairVector q) {
+  return {where(m, p.x, q.x), where(m, p.y, q.y)};
+}
 inline PairVector joined(PairVector a, PairVector b) {
   return {joined(a.x, b.x), joined(a.y, b.y)};
 }
@@ -112,10 +119,11 @@ struct PairDegrees {
   int degree[2];
   int max() const { return D > 0 ? D : degree[0] > degree[1] ? degree[0] : degree[1]; }
   int of(int lane) const { return D > 0 ? D : degree[lane]; }
-  /// x for the curves of degree above i, `otherwise` for others.
-  Lanes where_edge(int i, Lanes x, double otherwise) const {
-    if constexpr (D > 0) return x;
-    return Lanes{i < of(0) ? x[0] : otherwise, i < of(1) ? x[1] : otherwise};
+  /// x for the curves of degree above i, y for others.
+  template <class X>
+  X where_edge(int i, X x, X y) const {
+    if (D > 0 || degree[0] == degree[1]) return x;
+    return where(LaneMask{i < degree[0] ? -1 : 0, i < degree[1] ? -1 : 0}, x, y);
   }
   Lanes as_factor() const { return Lanes{static_cast<double>(of(0)), static_cast<double>(of(1))}; }
 };
@@ -123,8 +131,7 @@ struct PairDegrees {
 /// Differences of successive control points; the shorter list is filled up with zeros.
 template <int D, int Room>
 PairVector edge(const PairDegrees<D>& degrees, const PairPoints<Room>& p, int i) {
-  const PairVector e = p.p[i + 1] - p.p[i];
-  return {degrees.where_edge(i, e.x, 0.0), degrees.where_edge(i, e.y, 0.0)};
+  return degrees.where_edge(i, p.p[i + 1] - p.p[i], PairVector{both(0.0), both(0.0)});
 }
 
 /// Both curves halved by de Casteljau.
@@ -143,28 +150,21 @@ void halve_both(const PairDegrees<D>& degrees, const PairPoints<Room>& p, PairPo
       right.p[D - r] = q[D - r];
     }
   } else {
+    // In the lane of the lower degree the last point and then the first stay as they are.
     const int n = degrees.max();
-    for (int lane = 0; lane < 2; ++lane) {
-      const int d = degrees.of(lane);
-      const auto copy = [lane](PairVector& to, const PairVector& from) {
-        to.x[lane] = from.x[lane];
-        to.y[lane] = from.y[lane];
-      };
-      for (int i = 0; i <= n; ++i) copy(right.p[i], p.p[i]);
-      for (int i = 0; i <= n; ++i) copy(left.p[i], p.p[0]);
-      for (int r = 1; r <= d; ++r) {
-        for (int i = 0; i <= d - r; ++i) {
-          right.p[i].x[lane] = 0.5 * (right.p[i].x[lane] + right.p[i + 1].x[lane]);
-          right.p[i].y[lane] = 0.5 * (right.p[i].y[lane] + right.p[i + 1].y[lane]);
-        }
-        for (int i = r; i <= n; ++i) copy(left.p[i], right.p[0]);
-      }
+    PairVector* q = right.p;
+    for (int i = 0; i <= n; ++i) q[i] = p.p[i];
+    left.p[0] = q[0];
+    for (int r = 1; r <= n; ++r) {
+      for (int i = 0; i <= n - r; ++i)
+        q[i] = degrees.where_edge(i + r - 1, half * (q[i] + q[i + 1]), q[i]);
+      left.p[r] = q[0];
     }
   }
 }
 
 /// Expansions about the parameters s, by de Casteljau: values within (3 d + 1) u max|p| for s in
-/// [0, 1]. Where the degree is not known at compile time the third derivative is left out.
+/// [0, 1].
 template <int D, int Room>
 PairTaylor expand(const PairDegrees<D>& degrees, const PairPoints<Room>& points, Lanes s) {
   const PairVector* p = points.p;
@@ -184,30 +184,28 @@ PairTaylor expand(const PairDegrees<D>& degrees, const PairPoints<Room>& points,
             (p[3] - p[0]) - three * (p[2] - p[1])};
   } else {
     PairTaylor out{p[0], none, none, none};
-    for (int lane = 0; lane < 2; ++lane) {
-      const int d = degrees.of(lane);
-      const double t = s[lane], rest = r[lane];
-      double x[Room], y[Room];
-      for (int i = 0; i <= d; ++i) {
-        x[i] = p[i].x[lane];
-        y[i] = p[i].y[lane];
-      }
-      for (int k = d; k > 0; --k) {
-        if (k == 2) {
-          out.bend.x[lane] = 0.5 * d * (d - 1) * ((x[2] - x[1]) - (x[1] - x[0]));
-          out.bend.y[lane] = 0.5 * d * (d - 1) * ((y[2] - y[1]) - (y[1] - y[0]));
-        } else if (k == 1) {
-          out.slope.x[lane] = d * (x[1] - x[0]);
-          out.slope.y[lane] = d * (y[1] - y[0]);
+    const int n = degrees.max();
+    const Lanes d = degrees.as_factor(), one = both(1.0), two = both(2.0), three = both(3.0);
+    PairVector q[Room];
+    for (int i = 0; i <= n; ++i) q[i] = p[i];
+    for (int level = 1; level <= n; ++level) {
+      // The degree that is left.
+      const Lanes rest = d - both(level - 1);
+      if (any(rest <= three)) {
+        const PairVector e = q[1] - q[0];
+        if (any(rest == three)) {
+          const PairVector third = (q[3] - q[0]) - three * (q[2] - q[1]);
+          out.twist =
+              where(rest == three, d * (d - one) * (d - two) / both(6.0) * third, out.twist);
         }
-        for (int i = 0; i < k; ++i) {
-          x[i] = rest * x[i] + t * x[i + 1];
-          y[i] = rest * y[i] + t * y[i + 1];
-        }
+        if (any(rest == two))
+          out.bend = where(rest == two, both(0.5) * d * (d - one) * ((q[2] - q[1]) - e), out.bend);
+        if (any(rest == one)) out.slope = where(rest == one, d * e, out.slope);
       }
-      out.value.x[lane] = d > 0 ? x[0] : p[0].x[lane];
-      out.value.y[lane] = d > 0 ? y[0] : p[0].y[lane];
+      for (int i = 0; i <= n - level; ++i)
+        q[i] = degrees.where_edge(i + level - 1, r * q[i] + s * q[i + 1], q[i]);
     }
+    if (n > 0) out.value = q[0];
     return out;
   }
 }
