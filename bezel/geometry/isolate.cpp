@@ -237,11 +237,16 @@ typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle(const Box& box, La
     const PairVector other_slope = swapped(at.slope);
     const double local = 1.0 / cross(at.slope, other_slope)[0];
     const Lanes newton = cross(f, other_slope) * both(-local);
-    // Two terms more of the inverse function's series.
+    // Two terms more of the inverse function's series, by substitution into F' x = -F - F'' x^2 / 2 -
+    // F''' x^3 / 6. What the own and the other parameter contribute to each lane:
+    const PairVector solve = Lanes{local, -local} * other_slope;
+    const Lanes own_bend = cross(at.bend, solve), other_bend = cross(swapped(at.bend), solve);
+    const Lanes own_twist = cross(at.twist, solve), other_twist = cross(swapped(at.twist), solve);
     Lanes step = newton, correction = both(0.0);
     for (int k = 0; k < 2; ++k) {
-      const PairVector rest = first_minus_second((step * step) * (at.bend + step * at.twist));
-      correction = cross(rest, other_slope) * both(-local);
+      const Lanes turned = swapped(step);
+      correction = (other_bend + turned * other_twist) * (turned * turned) -
+                   (own_bend + step * own_twist) * (step * step);
       step = newton + correction;
     }
     // With C the inverse of the derivative here, ||I - C F'|| <= 1/2 on the ball of radius r.
