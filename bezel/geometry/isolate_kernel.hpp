@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <tuple>
 
 #include "bezel/geometry/curve_kernel.hpp"
 
@@ -17,13 +16,6 @@ namespace bezel::geometry_kernel {
 using Lanes [[gnu::vector_size(16)]] = double;
 using LaneMask = decltype(Lanes{} < Lanes{});  // of integers: all bits or none
 
-inline Lanes lanes(const double* p) {
-  return Lanes{p[0], p[1]};
-}
-inline void store(Lanes x, double* p) {
-  p[0] = x[0];
-  p[1] = x[1];
-}
 inline Lanes both(double x) {
   return Lanes{x, x};
 }
@@ -33,6 +25,10 @@ inline Lanes swapped(Lanes x) {
 }
 inline Lanes first_in_both(Lanes x) {
   return __builtin_shufflevector(x, x, 0, 0);
+}
+/// The second lanes of a and b.
+inline Lanes seconds(Lanes a, Lanes b) {
+  return __builtin_shufflevector(a, b, 1, 3);
 }
 /// a's first lane, b's second.
 inline Lanes joined(Lanes a, Lanes b) {
@@ -48,23 +44,27 @@ inline Lanes larger(Lanes x, Lanes y) {
 inline double larger(Lanes x) {
   return larger(x, swapped(x))[0];
 }
+/// x where m is set, else y.
+inline Lanes where(LaneMask m, Lanes x, Lanes y) {
+  return m ? x : y;
+}
 inline Lanes abs(Lanes x) {
   constexpr long long magnitude = 0x7fffffffffffffff;
   return reinterpret_cast<Lanes>(reinterpret_cast<LaneMask>(x) & LaneMask{magnitude, magnitude});
 }
-inline bool any(LaneMask m) {
+/// Bit i: lane i is set.
+inline unsigned lane_bits(LaneMask m) {
 #ifdef __SSE2__
-  return _mm_movemask_pd(reinterpret_cast<__m128d>(m)) != 0;
+  return static_cast<unsigned>(_mm_movemask_pd(reinterpret_cast<__m128d>(m)));
 #else
-  return (m[0] | m[1]) != 0;
+  return (m[0] != 0 ? 1U : 0U) | (m[1] != 0 ? 2U : 0U);
 #endif
 }
+inline bool any(LaneMask m) {
+  return lane_bits(m) != 0;
+}
 inline bool all(LaneMask m) {
-#ifdef __SSE2__
-  return _mm_movemask_pd(reinterpret_cast<__m128d>(m)) == 3;
-#else
-  return (m[0] & m[1]) != 0;
-#endif
+  return lane_bits(m) == 3;
 }
 
 /// A point or vector of each curve.
@@ -86,6 +86,12 @@ inline Lanes cross(PairVector p, PairVector q) {
 inline PairVector swapped(PairVector p) {
   return {swapped(p.x), swapped(p.y)};
 }
+inline PairVector where(LaneMask m, PairVector p, PairVector q) {
+  return {where(m, p.x, q.x), where(m, p.y, q.y)};
+}
+inline PairVector joined(PairVector a, PairVector b) {
+  return {joined(a.x, b.x), joined(a.y, b.y)};
+}
 /// |x| + |y|
 inline Lanes sum_norm(PairVector p) {
   return abs(p.x) + abs(p.y);
@@ -104,14 +110,7 @@ struct PairTaylor {
 /// Control points of both; the shorter list is filled up with copies of its last point.
 template <int Room>
 struct PairPoints {
-  alignas(16) double x[2 * Room];
-  alignas(16) double y[2 * Room];
-
-  PairVector at(int i) const { return {lanes(x + 2 * i), lanes(y + 2 * i)}; }
-  void set(int i, PairVector p) {
-    store(p.x, x + 2 * i);
-    store(p.y, y + 2 * i);
-  }
+  PairVector p[Room];
 };
 
 /// The degrees of both. D: when both are D at compile time, else 0.
@@ -120,110 +119,94 @@ struct PairDegrees {
   int degree[2];
   int max() const { return D > 0 ? D : degree[0] > degree[1] ? degree[0] : degree[1]; }
   int of(int lane) const { return D > 0 ? D : degree[lane]; }
-  Lanes as_factor() const {
-    alignas(16) const double d[2] = {static_cast<double>(of(0)), static_cast<double>(of(1))};
-    return lanes(d);
+  /// x for the curves of degree above i, y for others.
+  template <class X>
+  X where_edge(int i, X x, X y) const {
+    if (D > 0 || degree[0] == degree[1]) return x;
+    return where(LaneMask{i < degree[0] ? -1 : 0, i < degree[1] ? -1 : 0}, x, y);
   }
+  Lanes as_factor() const { return Lanes{static_cast<double>(of(0)), static_cast<double>(of(1))}; }
 };
 
-/// Differences of successive control points; the shorter list is filled up with copies of its last.
+/// Differences of successive control points; the shorter list is filled up with zeros.
 template <int D, int Room>
 PairVector edge(const PairDegrees<D>& degrees, const PairPoints<Room>& p, int i) {
-  if constexpr (D > 0) {
-    return p.at(i + 1) - p.at(i);
-  } else {
-    alignas(16) double x[2], y[2];
-    for (int lane = 0; lane < 2; ++lane) {
-      const int d = degrees.of(lane), j = 2 * (i < d ? i : d > 0 ? d - 1 : 0) + lane;
-      x[lane] = d > 0 ? p.x[j + 2] - p.x[j] : 0.0;
-      y[lane] = d > 0 ? p.y[j + 2] - p.y[j] : 0.0;
-    }
-    return {lanes(x), lanes(y)};
-  }
+  return degrees.where_edge(i, p.p[i + 1] - p.p[i], PairVector{both(0.0), both(0.0)});
 }
 
 /// Both curves halved by de Casteljau.
 template <int D, int Room>
 void halve_both(const PairDegrees<D>& degrees, const PairPoints<Room>& p, PairPoints<Room>& left,
                 PairPoints<Room>& right) {
+  const Lanes half = both(0.5);
   if constexpr (D > 0) {
-    const Lanes half = both(0.5);
     PairVector q[D + 1];
-    for (int i = 0; i <= D; ++i) q[i] = p.at(i);
-    left.set(0, q[0]);
-    right.set(D, q[D]);
+    for (int i = 0; i <= D; ++i) q[i] = p.p[i];
+    left.p[0] = q[0];
+    right.p[D] = q[D];
     for (int r = 1; r <= D; ++r) {
       for (int i = 0; i <= D - r; ++i) q[i] = half * (q[i] + q[i + 1]);
-      left.set(r, q[0]);
-      right.set(D - r, q[D - r]);
+      left.p[r] = q[0];
+      right.p[D - r] = q[D - r];
     }
   } else {
+    // In the lane of the lower degree the last point and then the first stay as they are.
     const int n = degrees.max();
-    for (int lane = 0; lane < 2; ++lane) {
-      const int d = degrees.of(lane);
-      for (const auto& [from, to_left, to_right] :
-           {std::tuple{p.x + lane, left.x + lane, right.x + lane},
-            std::tuple{p.y + lane, left.y + lane, right.y + lane}}) {
-        for (int i = 0; i <= d; ++i) to_right[2 * i] = from[2 * i];
-        to_left[0] = to_right[0];
-        for (int r = 1; r <= d; ++r) {
-          for (int i = 0; i <= d - r; ++i)
-            to_right[2 * i] = 0.5 * (to_right[2 * i] + to_right[2 * i + 2]);
-          to_left[2 * r] = to_right[0];
-        }
-        for (int i = d + 1; i <= n; ++i) {
-          to_left[2 * i] = to_left[2 * d];
-          to_right[2 * i] = to_right[2 * d];
-        }
-      }
+    PairVector* q = right.p;
+    for (int i = 0; i <= n; ++i) q[i] = p.p[i];
+    left.p[0] = q[0];
+    for (int r = 1; r <= n; ++r) {
+      for (int i = 0; i <= n - r; ++i)
+        q[i] = degrees.where_edge(i + r - 1, half * (q[i] + q[i + 1]), q[i]);
+      left.p[r] = q[0];
     }
   }
 }
 
 /// Expansions about the parameters s, by de Casteljau: values within (3 d + 1) u max|p| for s in
-/// [0, 1]. Where the degree is not known at compile time the third derivative is left out.
+/// [0, 1].
 template <int D, int Room>
-PairTaylor expand(const PairDegrees<D>& degrees, const PairPoints<Room>& p, Lanes s) {
+PairTaylor expand(const PairDegrees<D>& degrees, const PairPoints<Room>& points, Lanes s) {
+  const PairVector* p = points.p;
   const Lanes r = both(1.0) - s;
   const PairVector none{both(0.0), both(0.0)};
   if constexpr (D == 1) {
-    return {r * p.at(0) + s * p.at(1), p.at(1) - p.at(0), none, none};
+    return {r * p[0] + s * p[1], p[1] - p[0], none, none};
   } else if constexpr (D == 2) {
-    const PairVector e = p.at(1) - p.at(0), f = p.at(2) - p.at(1);
-    const PairVector w0 = r * p.at(0) + s * p.at(1), w1 = r * p.at(1) + s * p.at(2);
+    const PairVector e = p[1] - p[0], f = p[2] - p[1];
+    const PairVector w0 = r * p[0] + s * p[1], w1 = r * p[1] + s * p[2];
     return {r * w0 + s * w1, both(2.0) * (w1 - w0), f - e, none};
   } else if constexpr (D == 3) {
-    const PairVector p0 = p.at(0), p1 = p.at(1), p2 = p.at(2), p3 = p.at(3);
-    const PairVector q0 = r * p0 + s * p1, q1 = r * p1 + s * p2, q2 = r * p2 + s * p3;
+    const PairVector q0 = r * p[0] + s * p[1], q1 = r * p[1] + s * p[2], q2 = r * p[2] + s * p[3];
     const PairVector w0 = r * q0 + s * q1, w1 = r * q1 + s * q2;
     const Lanes three = both(3.0);
     return {r * w0 + s * w1, three * (w1 - w0), three * ((q2 - q1) - (q1 - q0)),
-            (p3 - p0) - three * (p2 - p1)};
+            (p[3] - p[0]) - three * (p[2] - p[1])};
   } else {
-    alignas(16) double s_of[2], out[6][2];
-    store(s, s_of);
-    for (int lane = 0; lane < 2; ++lane) {
-      const int d = degrees.of(lane);
-      const double t = s_of[lane], rest = 1.0 - t;
-      for (int c = 0; c < 2; ++c) {
-        const double* from = (c == 0 ? p.x : p.y) + lane;
-        double q[Room];
-        for (int i = 0; i <= d; ++i) q[i] = from[2 * i];
-        double slope = 0, bend = 0;
-        for (int k = d; k > 0; --k) {
-          if (k == 2) bend = 0.5 * d * (d - 1) * ((q[2] - q[1]) - (q[1] - q[0]));
-          if (k == 1) slope = d * (q[1] - q[0]);
-          for (int i = 0; i < k; ++i) q[i] = rest * q[i] + t * q[i + 1];
+    PairTaylor out{p[0], none, none, none};
+    const int n = degrees.max();
+    const Lanes d = degrees.as_factor(), one = both(1.0), two = both(2.0), three = both(3.0);
+    PairVector q[Room];
+    for (int i = 0; i <= n; ++i) q[i] = p[i];
+    for (int level = 1; level <= n; ++level) {
+      // The degree that is left.
+      const Lanes rest = d - both(level - 1);
+      if (any(rest <= three)) {
+        const PairVector e = q[1] - q[0];
+        if (any(rest == three)) {
+          const PairVector third = (q[3] - q[0]) - three * (q[2] - q[1]);
+          out.twist =
+              where(rest == three, d * (d - one) * (d - two) / both(6.0) * third, out.twist);
         }
-        out[c][lane] = q[0];
-        out[2 + c][lane] = slope;
-        out[4 + c][lane] = bend;
+        if (any(rest == two))
+          out.bend = where(rest == two, both(0.5) * d * (d - one) * ((q[2] - q[1]) - e), out.bend);
+        if (any(rest == one)) out.slope = where(rest == one, d * e, out.slope);
       }
+      for (int i = 0; i <= n - level; ++i)
+        q[i] = degrees.where_edge(i + level - 1, r * q[i] + s * q[i + 1], q[i]);
     }
-    return {{lanes(out[0]), lanes(out[1])},
-            {lanes(out[2]), lanes(out[3])},
-            {lanes(out[4]), lanes(out[5])},
-            none};
+    if (n > 0) out.value = q[0];
+    return out;
   }
 }
 
