@@ -19,19 +19,12 @@ constexpr int deepest = 40;  // halvings of each curve
 // 4 u condition, here 2^-31, digits that show in every use of the crossing.
 constexpr double finish_condition = 0x1p20;
 
-bool is_point(std::span<const Vec2> c) {
-  return std::all_of(c.begin(), c.end(), [&](const Vec2& p) { return p == c[0]; });
+bool is_point(const CurveCache& c) {
+  return c.box.lo == c.box.hi;
 }
 
 int degree(std::span<const Vec2> c) {
   return static_cast<int>(c.size()) - 1;
-}
-
-double largest_coordinate(std::span<const Vec2> a, std::span<const Vec2> b) {
-  double m = 0.0;
-  for (const auto& c : {a, b})
-    for (const Vec2& p : c) m = std::max({m, std::fabs(p.x()), std::fabs(p.y())});
-  return m;
 }
 
 Dyadic end(int i) {
@@ -45,28 +38,34 @@ struct Box {
 
 class Search {
  public:
-  Search(std::span<const Vec2> a, std::span<const Vec2> b, CurveIntersections& out)
-      : a_(a), b_(b), out_(out) {}
+  Search(const CurveCache& a, const CurveCache& b, CurveIntersections& out)
+      : a_(a.control),
+        b_(b.control),
+        near_a_(a_),
+        near_b_(b_),
+        a_is_point_(is_point(a)),
+        b_is_point_(is_point(b)),
+        out_(out),
+        magnitude_(std::max(a.magnitude, b.magnitude)) {}
 
   void run() {
-    magnitude_ = largest_coordinate(a_, b_);
-    near_a_ = a_;
-    near_b_ = b_;
-    if (is_point(a_) || is_point(b_)) {
+    if (a_is_point_ || b_is_point_) {
       points();
       return;
     }
     exponent_ = std::ilogb(magnitude_) + 1;
-    if (!isolate_scaled()) isolation_.open = {{0.0, 1.0, 0.0, 1.0, 0, 0.5, 0.5}};
+    if (!isolate_scaled()) isolation_.open.push_back({0.0, 1.0, 0.0, 1.0, 0, 0.5, 0.5});
     for (const IsolatedRoot& r : isolation_.roots) {
+      const Crossing c = crossing(r);
       // Ill-conditioned ones are computed again: exactly.
-      if (condition(r) <= finish_condition)
-        resolution_.roots.push_back(
-            {r.s, r.t, r.s_lo, r.s_hi, r.t_lo, r.t_hi, 1, r.sign, 0.0, false, false});
+      if (c.condition <= finish_condition)
+        out_.crossings.push_back(c);
       else
         isolation_.open.push_back({r.s_lo, r.s_hi, r.t_lo, r.t_hi, r.sign, r.s, r.t});
     }
     if (!isolation_.open.empty()) {
+      for (const Crossing& c : out_.crossings) resolution_.roots.push_back(known(c));
+      known_ = resolution_.roots.size();
       nodes_ = allowed_nodes();
       exact_a_.emplace(a_, exponent_);
       exact_b_.emplace(b_, exponent_);
@@ -81,7 +80,7 @@ class Search {
   // ---- A curve that is a point ----
 
   void points() {
-    const bool first = is_point(a_);
+    const bool first = a_is_point_;
     const std::span<const Vec2> curve = first ? b_ : a_;
     const Vec2 p = first ? a_[0] : b_[0];
     const auto add = [&](double s) {
@@ -91,7 +90,7 @@ class Search {
       root.s_end = root.t_end = true;
       resolution_.roots.push_back(root);
     };
-    if (is_point(curve)) {
+    if (a_is_point_ && b_is_point_) {
       if (curve[0] == p) add(0.0);
     } else {
       for (const Incidence& place : point_on_curve(curve, p).incidences) {
@@ -158,11 +157,12 @@ class Search {
     return std::max(64, static_cast<int>(nodes));
   }
 
-  double condition(const IsolatedRoot& r) const {
-    const CurvePoint p = curve_point(degree(a_), near_a_.data(), r.s);
-    const CurvePoint q = curve_point(degree(b_), near_b_.data(), r.t);
-    const double turn = std::fabs(cross(p.derivative, q.derivative));
-    return magnitude_ * std::max(norm(p.derivative), norm(q.derivative)) / turn;
+  Crossing crossing(const IsolatedRoot& r) const {
+    ResolvedRoot root = {r.s, r.t, r.s_lo, r.s_hi, r.t_lo, r.t_hi, 1, r.sign, 0.0, false, false};
+    return crossing(root);
+  }
+  static ResolvedRoot known(const Crossing& c) {
+    return {c.s, c.t, c.s_lo, c.s_hi, c.t_lo, c.t_hi, 1, c.sign, 0.0, false, false};
   }
 
   /// A simple root close to the border of [0, 1]^2, or ill-conditioned.
@@ -429,43 +429,48 @@ class Search {
   // ---- The answer ----
 
   /// Of the curves used in doubles, as a point of the given ones.
-  Vec2 scaled(const Vec2& p) const {
+  Vec2 unscaled(const Vec2& p) const {
     const int e = static_cast<int>(exponent_ - unit_);
     return e == 0 ? p : Vec2{{std::ldexp(p.x(), e), std::ldexp(p.y(), e)}};
   }
 
+  Crossing crossing(const ResolvedRoot& root) const {
+    const CurvePoint p = curve_point(degree(a_), near_a_.data(), root.s);
+    const CurvePoint q = curve_point(degree(b_), near_b_.data(), root.t);
+    Crossing c{};
+    c.s = root.s;
+    c.t = root.t;
+    c.s_lo = std::min(root.s_lo, root.s);
+    c.s_hi = std::max(root.s_hi, root.s);
+    c.t_lo = std::min(root.t_lo, root.t);
+    c.t_hi = std::max(root.t_hi, root.t);
+    c.certified = true;
+    c.sign = root.sign;
+    c.point_a = root.s == 0.0 ? a_.front() : root.s == 1.0 ? a_.back() : unscaled(p.value);
+    c.point_b = root.t == 0.0 ? b_.front() : root.t == 1.0 ? b_.back() : unscaled(q.value);
+    const double fast_squared =
+        std::max(dot(p.derivative, p.derivative), dot(q.derivative, q.derivative));
+    double turn = std::fabs(cross(p.derivative, q.derivative));
+    if (root.turn > 0.0) turn = std::ldexp(root.turn, static_cast<int>(2 * unit_));
+    c.condition = root.sign != 0 && turn > 0.0 ? magnitude_ * std::sqrt(fast_squared) / turn
+                                               : std::numeric_limits<double>::infinity();
+    return c;
+  }
+
   void report() {
-    const int m = degree(a_), n = degree(b_);
-    for (const ResolvedRoot& root : resolution_.roots) {
-      if (root.order != 1 && !root.s_end && !root.t_end) {
+    for (std::size_t i = known_; i < resolution_.roots.size(); ++i) {
+      const ResolvedRoot& root = resolution_.roots[i];
+      if (root.order != 1 && !root.s_end && !root.t_end)
         out_.tangencies.push_back({root.s, root.t, root.order});
-        continue;
-      }
-      const CurvePoint p = curve_point(m, near_a_.data(), root.s);
-      const CurvePoint q = curve_point(n, near_b_.data(), root.t);
-      Crossing c{};
-      c.s = root.s;
-      c.t = root.t;
-      c.s_lo = std::min(root.s_lo, root.s);
-      c.s_hi = std::max(root.s_hi, root.s);
-      c.t_lo = std::min(root.t_lo, root.t);
-      c.t_hi = std::max(root.t_hi, root.t);
-      c.certified = true;
-      c.sign = root.sign;
-      c.point_a = root.s == 0.0 ? a_.front() : root.s == 1.0 ? a_.back() : scaled(p.value);
-      c.point_b = root.t == 0.0 ? b_.front() : root.t == 1.0 ? b_.back() : scaled(q.value);
-      const double fast = std::max(norm(p.derivative), norm(q.derivative));
-      double turn = std::fabs(cross(p.derivative, q.derivative));
-      if (root.turn > 0.0) turn = std::ldexp(root.turn, static_cast<int>(2 * unit_));
-      c.condition = root.sign != 0 && turn > 0.0 ? magnitude_ * fast / turn
-                                                 : std::numeric_limits<double>::infinity();
-      out_.crossings.push_back(c);
+      else
+        out_.crossings.push_back(crossing(root));
     }
     const auto earlier = [](const auto& p, const auto& q) {
       return p.s != q.s ? p.s < q.s : p.t < q.t;
     };
-    std::sort(out_.crossings.begin(), out_.crossings.end(), earlier);
-    std::sort(out_.tangencies.begin(), out_.tangencies.end(), earlier);
+    if (out_.crossings.size() > 1) std::sort(out_.crossings.begin(), out_.crossings.end(), earlier);
+    if (out_.tangencies.size() > 1)
+      std::sort(out_.tangencies.begin(), out_.tangencies.end(), earlier);
     for (const Undecided& box : resolution_.undecided) {
       bool joined = false;
       for (UnresolvedBox& known : out_.unresolved) {
@@ -484,12 +489,14 @@ class Search {
   std::span<const Vec2> a_, b_;
   std::span<const Vec2> near_a_, near_b_;  // the same, or scaled to coordinates below 1
   std::vector<Vec2> scaled_a_, scaled_b_;
+  bool a_is_point_, b_is_point_;
   CurveIntersections& out_;
-  double magnitude_ = 0.0;     // largest |coordinate| of near_a_ and near_b_
+  double magnitude_;           // largest |coordinate| of near_a_ and near_b_
   std::int64_t exponent_ = 0;  // the exact curves are a_ and b_ times 2^-exponent_
   std::int64_t unit_ = 0;      // and near_a_ and near_b_ times 2^-unit_
   Isolation isolation_;
   Resolution resolution_;
+  std::size_t known_ = 0;  // of its roots: already reported
   std::optional<ExactCurve> exact_a_, exact_b_;
   std::optional<CoincidenceMap> map_;
   int nodes_ = 0;
@@ -528,7 +535,7 @@ void CoincidenceMap::image(double s0, double s1, double& lo, double& hi) const {
   hi += room;
 }
 
-void intersect_exactly(std::span<const Vec2> a, std::span<const Vec2> b, CurveIntersections& out) {
+void intersect_exactly(const CurveCache& a, const CurveCache& b, CurveIntersections& out) {
   Search(a, b, out).run();
 }
 

@@ -4,8 +4,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
-#include <vector>
 
 #include "bezel/geometry/curve.hpp"
 #include "bezel/geometry/isolate.hpp"
@@ -28,8 +26,7 @@ class CoincidenceMap {
   Dyadic p_, q_;
 };
 
-/// @param a, b  1 to 61 finite control points, unchecked
-/// @param out   cleared by the caller
-void intersect_exactly(std::span<const Vec2> a, std::span<const Vec2> b, CurveIntersections& out);
+/// @param out  cleared by the caller
+void intersect_exactly(const CurveCache& a, const CurveCache& b, CurveIntersections& out);
 
 }  // namespace bezel::geometry_kernel
