@@ -263,6 +263,22 @@ Vec2 point_inside(bezel::RandomStream& random, int g, const std::vector<Vec2>& n
   return p;
 }
 
+void report_points(benchmark::State& state, std::size_t count) {
+  state.counters["s_per_point"] =
+      benchmark::Counter(static_cast<double>(count), benchmark::Counter::kIsIterationInvariantRate |
+                                                         benchmark::Counter::kInvert);
+}
+void report_located(benchmark::State& state, const std::vector<bezel::LocateResult>& found) {
+  report_points(state, found.size());
+  double missed = 0, worst = 0;
+  for (const bezel::LocateResult& r : found) {
+    missed += r.status == bezel::Location::inside ? 0.0 : 1.0;
+    worst = std::max(worst, r.residual);
+  }
+  state.counters["missed"] = missed;
+  state.counters["residual_max"] = worst / 0x1p-53;
+}
+
 /// One point in each of many triangles, in random order.
 void locate(benchmark::State& state) {
   const int g = static_cast<int>(state.range(0));
@@ -281,17 +297,55 @@ void locate(benchmark::State& state) {
       out[i] = bezel::locate(g, nets[which[i]], points[i]);
     benchmark::ClobberMemory();
   }
-  state.counters["s_per_point"] = benchmark::Counter(
-      static_cast<double>(points.size()),
-      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
-  double missed = 0, worst = 0;
-  for (const bezel::LocateResult& r : out) {
-    missed += r.status == bezel::Location::inside ? 0.0 : 1.0;
-    worst = std::max(worst, r.residual);
-  }
-  state.counters["missed"] = missed;
-  state.counters["residual_max"] = worst / 0x1p-53;
+  report_located(state, out);
 }
 BENCHMARK(locate)->Name("bezel/locate")->ArgName("g")->DenseRange(1, 4);
+
+/// Points in one triangle, `many` of them in one call or one by one.
+template <bool many>
+void one_triangle(benchmark::State& state) {
+  const int g = static_cast<int>(state.range(0));
+  bezel::RandomStream random("geometry_bench one_triangle", static_cast<std::uint64_t>(g));
+  const std::vector<Vec2> net = triangle_of(random, g);
+  std::vector<Vec2> points;
+  for (int i = 0; i < 1000; ++i) points.push_back(point_inside(random, g, net));
+  std::vector<bezel::LocateResult> out(points.size());
+  for (auto _ : state) {
+    if (many)
+      bezel::locate(g, net, points, out);
+    else
+      for (std::size_t i = 0; i < points.size(); ++i) out[i] = bezel::locate(g, net, points[i]);
+    benchmark::ClobberMemory();
+  }
+  report_located(state, out);
+}
+BENCHMARK(one_triangle<true>)->Name("bezel/locate many")->ArgName("g")->DenseRange(1, 5);
+BENCHMARK(one_triangle<false>)->Name("bezel/locate one by one")->ArgName("g")->DenseRange(1, 5);
+
+/// The same by `invert`, from the middle of the triangle.
+template <bool many>
+void invert_points(benchmark::State& state) {
+  const int g = static_cast<int>(state.range(0));
+  bezel::RandomStream random("geometry_bench one_triangle", static_cast<std::uint64_t>(g));
+  const std::vector<Vec2> net = triangle_of(random, g);
+  std::vector<Vec2> points;
+  for (int i = 0; i < 1000; ++i) points.push_back(point_inside(random, g, net));
+  const std::vector<Lambda> start(points.size(), Lambda{1.0 / 3, 1.0 / 3, 1.0 / 3});
+  std::vector<bezel::InverseResult> out(points.size());
+  for (auto _ : state) {
+    if (many)
+      bezel::invert(g, net, points, start, out);
+    else
+      for (std::size_t i = 0; i < points.size(); ++i)
+        out[i] = bezel::invert(g, net, points[i], start[i]);
+    benchmark::ClobberMemory();
+  }
+  report_points(state, points.size());
+  double missed = 0;
+  for (const bezel::InverseResult& r : out) missed += r.converged ? 0.0 : 1.0;
+  state.counters["missed"] = missed;
+}
+BENCHMARK(invert_points<true>)->Name("bezel/invert many")->ArgName("g")->DenseRange(1, 5);
+BENCHMARK(invert_points<false>)->Name("bezel/invert one by one")->ArgName("g")->DenseRange(1, 5);
 
 }  // namespace
