@@ -1,8 +1,9 @@
 #pragma once
 // Pairs of curves, and the truth about their common points to judge libraries by.
 //
-// A true root is what Newton's method with compensated residuals converges to from a root that one
-// of the libraries reported. A root that no library reports is not counted against any of them.
+// A true root is what Newton's method with compensated residuals, and a last step in extended
+// precision, converges to from a root that one of the libraries reported. A root that no library
+// reports is not counted against any of them.
 
 #include <algorithm>
 #include <cmath>
@@ -62,6 +63,7 @@ inline Pairs random_pairs(int degree, std::size_t count, int bits) {
 
 struct TrueRoot {
   double s, t;
+  double ds, dt;     ///< to be added, so that the root is known beyond the rounding of s and t
   double condition;  ///< largest |coordinate| / (slower speed * sine of the angle)
 };
 
@@ -69,7 +71,7 @@ struct TrueRoot {
 inline constexpr double largest_error = 0x1p-12;
 
 inline double distance(double s, double t, const TrueRoot& r) {
-  return std::max(std::fabs(s - r.s), std::fabs(t - r.t));
+  return std::max(std::fabs((s - r.s) - r.ds), std::fabs((t - r.t) - r.dt));
 }
 
 /// d/ds c(s) by de Casteljau.
@@ -78,6 +80,22 @@ inline Vec2 derivative(Curve c, double s) {
   for (std::size_t d = q.size() - 1; d >= 2; --d)
     for (std::size_t i = 0; i < d; ++i) q[i] = (1.0 - s) * q[i] + s * q[i + 1];
   return static_cast<double>(c.size() - 1) * (q[1] - q[0]);
+}
+
+/// a(s) - b(t) in extended precision.
+inline Vec2 residual(const Pair& pair, double s, double t) {
+  const auto value = [](Curve c, double at, int axis) {
+    std::vector<long double> q;
+    for (const Vec2& p : c) q.push_back(p[axis]);
+    const long double x = at;
+    for (std::size_t d = q.size() - 1; d > 0; --d)
+      for (std::size_t i = 0; i < d; ++i) q[i] = (1 - x) * q[i] + x * q[i + 1];
+    return q[0];
+  };
+  const auto difference = [&](int axis) {
+    return static_cast<double>(value(pair.a, s, axis) - value(pair.b, t, axis));
+  };
+  return Vec2{{difference(0), difference(1)}};
 }
 
 /// Adds the root next to `start` unless there is none or it is known.
@@ -98,13 +116,20 @@ inline void add_root(const Pair& pair, const Parameters& start, std::vector<True
     for (const Vec2& p : c) largest = std::max({largest, std::fabs(p.x()), std::fabs(p.y())});
   const Vec2 da = derivative(pair.a, found.s), db = derivative(pair.b, found.t);
   const double faster = std::max(norm(da), norm(db));
-  const TrueRoot root{found.s, found.t, largest * faster / std::fabs(cross(da, db))};
+  const double det = cross(da, db);
+  TrueRoot root{found.s, found.t, 0, 0, largest * faster / std::fabs(det)};
+  if (root.condition < 0x1p10) {
+    // One step more: the residual is good for 2^-10 u condition, less than the rounding of s.
+    const Vec2 rest = residual(pair, found.s, found.t);
+    root.ds = -cross(rest, db) / det;
+    root.dt = -cross(rest, da) / det;
+  }
   const double slack = 4 * u * root.condition;
   const auto inside = [&](double x) { return x >= -slack && x <= 1 + slack; };
   if (!inside(root.s) || !inside(root.t)) return;
   if (!(distance(start.s, start.t, root) <= largest_error)) return;
   for (const TrueRoot& r : roots)
-    if (distance(root.s, root.t, r) <= 64 * u) return;
+    if (std::max(std::fabs(root.s - r.s), std::fabs(root.t - r.t)) <= 64 * u) return;
   roots.push_back(root);
 }
 
