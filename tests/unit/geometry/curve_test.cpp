@@ -64,10 +64,6 @@ TEST(CurveTest, BadInput) {
   options.coincidence_distance = -1;
   EXPECT_EQ(message_of([&] { intersect(line, line, options); }),
             "the coincidence distance must be finite and not negative");
-  EXPECT_EQ(message_of([&] {
-              bezel::foot_point(line, Vec2{{INFINITY, 0}});
-            }),
-            "the point is not finite");
 }
 
 TEST(IntersectTest, TwoLines) {
@@ -204,16 +200,6 @@ TEST(IntersectTest, CurvesOnOneLine) {
   EXPECT_EQ(touching.crossings[0].s, 1.0);
   EXPECT_EQ(touching.crossings[0].t, 0.0);
   EXPECT_TRUE(touching.overlaps.empty() && touching.unresolved.empty());
-}
-
-TEST(FootPointTest, NearestOfSeveral) {
-  const Points parabola{{{-1, 1}}, {{0, -1}}, {{1, 1}}};  // y = x^2
-  const auto foot = bezel::foot_point(parabola, Vec2{{0, -1}});
-  EXPECT_NEAR(foot.s, 0.5, 1e-9);
-  EXPECT_NEAR(foot.distance, 1.0, 1e-15);
-  const auto end = bezel::foot_point(parabola, Vec2{{3, 3}});
-  EXPECT_EQ(end.s, 1.0);
-  EXPECT_EQ(end.point, (Vec2{{1, 1}}));
 }
 
 }  // namespace
