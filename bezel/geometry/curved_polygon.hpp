@@ -81,7 +81,7 @@ Vec2 centroid(const CurvedPolygon& polygon);
 
 /// Integral of x^a y^b over what the loop encloses, by Gauss rules of sufficient degree.
 ///
-/// @param a, b  >= 0, with (a + b + 2) * largest degree <= 4000
+/// @param a, b  >= 0, with (a + b + 2) times the largest degree <= 400
 /// @accuracy a few d u times the integral of |x|^a |y|^b over the loop's surroundings; positions
 ///           are those of the plane, not relative to the polygon: far from the origin terms cancel
 double moment(const CurvedPolygon& polygon, int a, int b);

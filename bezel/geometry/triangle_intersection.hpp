@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,9 @@ struct TriangleIntersectOptions {
   /// As in IntersectOptions: sides nearer to each other than this count as coincident, corners as
   /// lying on a side. 0: the given control points are taken as exact.
   double coincidence_distance = 0.0;
+  /// Two regions that touch in one point only, where two sides are tangent: one polygon that
+  /// touches itself there (false), or two simple polygons with that point as a joint (true).
+  bool cut_where_touching = false;
 };
 
 enum class TriangleRelation : std::uint8_t {
@@ -33,7 +37,8 @@ enum class TriangleRelation : std::uint8_t {
 /// points.
 struct TriangleIntersections {
   TriangleRelation relation = TriangleRelation::disjoint;
-  /// One per region, counter-clockwise, simple. Empty when disjoint, touching or unresolved; the
+  /// One per region, counter-clockwise, simple but for touching itself where two sides are tangent
+  /// (see `cut_where_touching`). Empty when disjoint, touching or unresolved; the
   /// inner triangle's boundary (the first's when the same) in the cases of containment.
   std::vector<CurvedPolygon> polygons;
   std::string reason;  ///< unresolved: why
@@ -45,7 +50,7 @@ struct TriangleDifference {
   /// Of the two triangles, as `intersect` says.
   TriangleRelation relation = TriangleRelation::disjoint;
   /// Counter-clockwise loops around regions, clockwise ones around holes; empty when nothing
-  /// remains or unresolved. A loop may touch itself in a joint.
+  /// remains or unresolved. Loops may touch each other.
   std::vector<CurvedPolygon> loops;
   std::string reason;  ///< unresolved: why
   Box2 box;            ///< unresolved: where, in the plane
@@ -78,5 +83,23 @@ TriangleIntersections intersect(int g, std::span<const Vec2> a, int h, std::span
 /// area(A and B) + area(A without B) = area(A) to rounding.
 TriangleDifference difference(int g, std::span<const Vec2> a, int h, std::span<const Vec2> b,
                               const TriangleIntersectOptions& options = {});
+
+/// `intersect` for those who ask many times: storage is kept from one call to the next.
+class TriangleIntersector {
+ public:
+  explicit TriangleIntersector(const TriangleIntersectOptions& options = {});
+  ~TriangleIntersector();
+  TriangleIntersector(TriangleIntersector&&) noexcept;
+  TriangleIntersector& operator=(TriangleIntersector&&) noexcept;
+  /// As the function of this name; `out` is overwritten and its storage reused. Not for several
+  /// threads at once. After an exception `out` is valid and may hold anything.
+  void intersect(int g, std::span<const Vec2> a, int h, std::span<const Vec2> b,
+                 TriangleIntersections& out);
+
+ private:
+  struct Work;
+  TriangleIntersectOptions options_;
+  std::unique_ptr<Work> work_;
+};
 
 }  // namespace bezel
