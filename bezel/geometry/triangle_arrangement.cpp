@@ -68,6 +68,13 @@ int same_curve(std::span<const Vec2> a, std::span<const Vec2> b) {
   return std::equal(a.begin(), a.end(), b.rbegin()) ? -1 : 0;
 }
 
+/// The sign of a crossing where boundary k enters the other triangle. cross(a', b') > 0: the second
+/// triangle's side passes from right to left of the first's, into the first; and the first's goes
+/// from left to right, out of the second.
+int entering(int k) {
+  return k == 0 ? -1 : 1;
+}
+
 Box2 part_box(const CurveCache& side, double s0, double s1) {
   PointBuffer<max_curve_points> points;
   const int d = static_cast<int>(side.control.size()) - 1;
@@ -242,29 +249,58 @@ bool Arrangement::join(BoundaryJoint& joint, const BoundaryJoint& contact) {
 }
 
 bool Arrangement::sort_joints() {
-  for (std::size_t k = 0; k < 2; ++k) {
-    std::vector<std::int32_t>& order = order_[k];
+  for (int k = 0; k < 2; ++k) {
+    std::vector<std::int32_t>& order = order_[at(k)];
     order.resize(joints_.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::int32_t>(i);
-    const auto joint = [&](std::int32_t i) -> BoundaryJoint& {
-      return joints_[static_cast<std::size_t>(i)];
-    };
     std::sort(order.begin(), order.end(), [&](std::int32_t i, std::int32_t j) {
-      return before(joint(i).place[k], joint(j).place[k]);
+      return before(joint(i).place[at(k)], joint(j).place[at(k)]);
     });
-    for (std::size_t i = 0; i < order.size(); ++i)
-      joint(order[i]).position[k] = static_cast<std::int32_t>(i);
-    for (std::size_t i = 1; i < order.size(); ++i) {
-      const BoundaryJoint &p = joint(order[i - 1]), &q = joint(order[i]);
-      if (p.place[k].edge != q.place[k].edge || is_corner(p.place[k]) || p.hi[k] < q.lo[k])
-        continue;
-      Box2 where;
-      where.include(p.point);
-      where.include(q.point);
-      return fail("the order of common points along a side is lost in rounding", where);
-    }
+    for (std::size_t i = 1; i < order.size(); ++i)
+      if (!apart(k, order[i - 1], order[i]) && !order_pair(k, i - 1)) return false;
   }
   return true;
+}
+
+/// Whether joint i comes before joint j on the same side for certain, or they are on two sides.
+bool Arrangement::apart(int k, std::int32_t i, std::int32_t j) const {
+  const BoundaryJoint &p = joint(i), &q = joint(j);
+  return p.place[at(k)].edge != q.place[at(k)].edge || is_corner(p.place[at(k)]) ||
+         p.hi[at(k)] < q.lo[at(k)];
+}
+
+/// Joints i and i + 1 along boundary k are too near to each other: two crossings, into the other
+/// triangle and out of it, have the order that fits what comes before them.
+bool Arrangement::order_pair(int k, std::size_t i) {
+  std::vector<std::int32_t>& order = order_[at(k)];
+  const std::size_t n = order.size();
+  BoundaryJoint &p = joints_[static_cast<std::size_t>(order[i])],
+                &q = joints_[static_cast<std::size_t>(order[i + 1])];
+  const std::int32_t last = order[(i + n - 1) % n];
+  const bool alone =
+      (i == 0 || apart(k, last, order[i])) && (i == 0 || apart(k, last, order[i + 1])) &&
+      (i + 2 == n || (apart(k, order[i], order[i + 2]) && apart(k, order[i + 1], order[i + 2])));
+  if (p.sign * q.sign < 0 && alone) {
+    const double lo = std::min(p.lo[at(k)], q.lo[at(k)]), hi = std::max(p.hi[at(k)], q.hi[at(k)]);
+    int place = n > 2 ? joint(last).sign * entering(k) : 0;
+    if (place == 0) {
+      const bool around = n == 2;
+      place = class_between(k, around ? p.place[at(k)] : joint(last).place[at(k)],
+                            around ? hi : joint(last).hi[at(k)], p.place[at(k)], lo);
+    }
+    if (place != 0) {
+      // Inside: the first one leads out.
+      if (p.sign * entering(k) * place > 0) std::swap(order[i], order[i + 1]);
+      const double s = 0.5 * (p.place[at(k)].s + q.place[at(k)].s);
+      joints_[static_cast<std::size_t>(order[i])].place[at(k)].s = s;
+      joints_[static_cast<std::size_t>(order[i + 1])].place[at(k)].s = std::nextafter(s, 1.0);
+      return true;
+    }
+  }
+  Box2 where;
+  where.include(p.point);
+  where.include(q.point);
+  return fail("the order of common points along a side is lost in rounding", where);
 }
 
 bool Arrangement::classify(int k) {
@@ -279,12 +315,8 @@ bool Arrangement::classify(int k) {
 }
 
 bool Arrangement::classify_part(int k, BoundaryPart& part) {
-  const BoundaryJoint &p = joints_[static_cast<std::size_t>(part.from)],
-                      &q = joints_[static_cast<std::size_t>(part.to)];
-  // cross(a', b') > 0: the second triangle's side passes from right to left of the first's, into
-  // the first; and the first's goes from left to right, out of the second.
-  const int enters = k == 0 ? -1 : 1;
-  const int at_start = p.sign * enters, at_end = -q.sign * enters;
+  const BoundaryJoint &p = joint(part.from), &q = joint(part.to);
+  const int at_start = p.sign * entering(k), at_end = -q.sign * entering(k);
   if (at_start + at_end != 0) {  // known, and not contradictory
     part.place = at_start + at_end > 0 ? PartClass::inside : PartClass::outside;
     return true;
@@ -310,34 +342,40 @@ bool Arrangement::classify_part(int k, BoundaryPart& part) {
 
 /// By a point strictly between the joints: no common point is there, so any one will do.
 bool Arrangement::classify_exactly(int k, BoundaryPart& part) {
-  const BoundaryJoint &p = joints_[static_cast<std::size_t>(part.from)],
-                      &q = joints_[static_cast<std::size_t>(part.to)];
-  const BoundaryPlace &start = p.place[at(k)], &end = q.place[at(k)];
-  const auto decided = [&](int side, double s) {
-    const Place place = place_of(k, side, s);
-    part.place = place == Place::inside ? PartClass::inside : PartClass::outside;
-    return place != Place::unknown;
-  };
-  int side = start.edge;
-  double lo = p.hi[at(k)];
-  for (bool first = true;; first = false) {
-    // The joint's own side comes round again when the part goes once around.
-    const bool last = side == end.edge && (!first || start.s < end.s);
-    const double hi = last ? q.lo[at(k)] : 1.0;
-    for (const double f : {0.5, 0.3125, 0.6875}) {
-      const double s = lo + f * (hi - lo);
-      if (lo < s && s < hi && decided(side, s)) return true;
-    }
-    if (last) break;
-    side = (side + 1) % 3;
-    lo = 0.0;
-    if (side == end.edge && end.s == 0.0) break;
-    if (decided(side, 0.0)) return true;
-  }
+  const BoundaryJoint &p = joint(part.from), &q = joint(part.to);
+  const int place = class_between(k, p.place[at(k)], p.hi[at(k)], q.place[at(k)], q.lo[at(k)]);
+  part.place = place > 0 ? PartClass::inside : PartClass::outside;
+  if (place != 0) return true;
   Box2 where;
   where.include(p.point);
   where.include(q.point);
   return fail("what is between two common points could not be told", where);
+}
+
+int Arrangement::class_between(int k, const BoundaryPlace& start, double after,
+                               const BoundaryPlace& end, double before_end) const {
+  Place place = Place::unknown;
+  const auto decided = [&](int side, double s) {
+    place = place_of(k, side, s);
+    return place != Place::unknown;
+  };
+  const auto result = [&] { return place == Place::inside ? 1 : -1; };
+  int side = start.edge;
+  double lo = after;
+  for (bool first = true;; first = false) {
+    // The joint's own side comes round again when the part goes once around.
+    const bool last = side == end.edge && (!first || start.s < end.s);
+    const double hi = last ? before_end : 1.0;
+    for (const double f : {0.5, 0.3125, 0.6875}) {
+      const double s = lo + f * (hi - lo);
+      if (lo < s && s < hi && decided(side, s)) return result();
+    }
+    if (last) return 0;
+    side = (side + 1) % 3;
+    lo = 0.0;
+    if (side == end.edge && end.s == 0.0) return 0;
+    if (decided(side, 0.0)) return result();
+  }
 }
 
 Arrangement::Place Arrangement::place_of(int k, int side, double s) const {
