@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "bezel/bernstein/index.hpp"
 #include "bezel/geometry/curve_incidence.hpp"
@@ -32,15 +31,14 @@ struct Parameter {
   bool end;
 };
 
-bool is_end(double s, double lo, double hi) {
-  return lo == hi && (s == 0.0 || s == 1.0);
+/// `intersect` returns these for common points at an end only.
+bool is_end(double s) {
+  return s == 0.0 || s == 1.0;
 }
 
 /// The computed parameter is within half the error of the true one, which is in the box, too.
 Parameter parameter_of(double s, double lo, double hi, double error) {
-  if (is_end(s, lo, hi)) return {s, s, s, true};
-  // A true parameter inside (0, 1) that is rounded to an end stays inside.
-  s = std::clamp(s, std::numeric_limits<double>::min(), 1.0 - u);
+  if (is_end(s)) return {s, s, s, true};
   double least = std::max(0.0, s - error), most = std::min(1.0, s + error);
   if (lo < hi) {
     least = std::max(least, lo);
@@ -147,7 +145,7 @@ bool Arrangement::meet(int i, int j, double coincidence_distance) {
   }
   for (const Crossing& c : found_.crossings) {
     // Where a corner lies on a side only that side's speed counts, else the angle as well.
-    const bool corner = is_end(c.s, c.s_lo, c.s_hi) || is_end(c.t, c.t_lo, c.t_hi);
+    const bool corner = is_end(c.s) || is_end(c.t);
     const auto error = [&](const CurveCache& side, double at) {
       double amplification = c.condition;
       if (corner) {
@@ -170,9 +168,8 @@ bool Arrangement::meet(int i, int j, double coincidence_distance) {
   const auto add_place = [&](double s, double t, double slack) {
     BoundaryJoint joint{};
     const auto parameter = [&](double x) {
-      const bool end = x == 0.0 || x == 1.0;
-      return Parameter{x, end ? x : std::max(0.0, x - slack), end ? x : std::min(1.0, x + slack),
-                       end};
+      if (is_end(x)) return Parameter{x, x, x, true};
+      return Parameter{x, std::max(0.0, x - slack), std::min(1.0, x + slack), false};
     };
     set_place(joint, 0, i, parameter(s));
     set_place(joint, 1, j, parameter(t));
