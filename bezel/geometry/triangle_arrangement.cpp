@@ -27,24 +27,24 @@ bool before(const BoundaryPlace& p, const BoundaryPlace& q) {
 
 /// A parameter with the interval that holds the true one; ends of the side exactly.
 struct Parameter {
-  double s, lo, hi;
+  double s, lo, hi, error;
   bool end;
 };
 
-/// `intersect` returns these for common points at an end only.
+/// Common points at an end, and such that are rounded to it: `settle_corners` tells them apart.
 bool is_end(double s) {
   return s == 0.0 || s == 1.0;
 }
 
 /// The computed parameter is within half the error of the true one, which is in the box, too.
 Parameter parameter_of(double s, double lo, double hi, double error) {
-  if (is_end(s)) return {s, s, s, true};
+  if (is_end(s)) return {s, s, s, error, true};
   double least = std::max(0.0, s - error), most = std::min(1.0, s + error);
   if (lo < hi) {
     least = std::max(least, lo);
     most = std::min(most, hi);
   }
-  return {s, std::min(least, s), std::max(most, s), false};
+  return {s, std::min(least, s), std::max(most, s), error, false};
 }
 
 void set_place(BoundaryJoint& joint, int k, int side, const Parameter& p) {
@@ -53,6 +53,8 @@ void set_place(BoundaryJoint& joint, int k, int side, const Parameter& p) {
     joint.place[i] = {p.s == 0.0 ? side : (side + 1) % 3, 0.0};
   else
     joint.place[i] = {side, p.s};
+  joint.seen[i] = !p.end ? 0 : p.s == 0.0 ? 1 : 2;
+  joint.error[i] = p.error;
   joint.lo[i] = p.end ? 0.0 : p.lo;
   joint.hi[i] = p.end ? 0.0 : p.hi;
 }
@@ -127,6 +129,7 @@ bool Arrangement::build(const TriangleSides& a, const TriangleSides& b,
     }
     return true;
   }
+  settle_corners();
   return sort_joints() && classify(0) && classify(1);
 }
 
@@ -160,7 +163,8 @@ bool Arrangement::meet(int i, int j, double coincidence_distance) {
     BoundaryJoint joint{};
     set_place(joint, 0, i, s);
     set_place(joint, 1, j, t);
-    joint.sign = c.certified && !s.end && !t.end ? c.sign : 0;
+    joint.seen_sign = c.certified ? c.sign : 0;
+    joint.sign = s.end || t.end ? 0 : joint.seen_sign;
     // The same bits when the triangles change places.
     joint.point = 0.5 * (c.point_a + c.point_b);
     if (!add_contact(joint)) return false;
@@ -168,8 +172,8 @@ bool Arrangement::meet(int i, int j, double coincidence_distance) {
   const auto add_place = [&](double s, double t, double slack) {
     BoundaryJoint joint{};
     const auto parameter = [&](double x) {
-      if (is_end(x)) return Parameter{x, x, x, true};
-      return Parameter{x, std::max(0.0, x - slack), std::min(1.0, x + slack), false};
+      if (is_end(x)) return Parameter{x, x, x, slack, true};
+      return Parameter{x, std::max(0.0, x - slack), std::min(1.0, x + slack), slack, false};
     };
     set_place(joint, 0, i, parameter(s));
     set_place(joint, 1, j, parameter(t));
@@ -223,13 +227,18 @@ bool Arrangement::add_contact(const BoundaryJoint& contact) {
 
 bool Arrangement::join(BoundaryJoint& joint, const BoundaryJoint& contact) {
   for (std::size_t k = 0; k < 2; ++k) {
-    if (joint.place[k] == contact.place[k]) continue;
+    if (joint.place[k] == contact.place[k]) {
+      joint.seen[k] |= contact.seen[k];
+      continue;
+    }
     const bool old_corner = is_corner(joint.place[k]), new_corner = is_corner(contact.place[k]);
     if (old_corner && !new_corner) continue;
     if (!old_corner && new_corner) {
       joint.place[k] = contact.place[k];
       joint.lo[k] = contact.lo[k];
       joint.hi[k] = contact.hi[k];
+      joint.seen[k] = contact.seen[k];
+      joint.error[k] = contact.error[k];
       if (k == 0 || !is_corner(joint.place[0]))
         joint.point = sides(static_cast<int>(k)).corner(joint.place[k].edge);
       continue;
@@ -245,6 +254,58 @@ bool Arrangement::join(BoundaryJoint& joint, const BoundaryJoint& contact) {
   return true;
 }
 
+/// A corner on the other boundary is met by both sides that end there. What only one of them meets
+/// is a common point inside that side, so near to its end that its parameter is rounded to it.
+void Arrangement::settle_corners() {
+  for (BoundaryJoint& joint : joints_) {
+    bool moved = false;
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (joint.seen[k] != 1 && joint.seen[k] != 2) continue;
+      moved = true;
+      const bool start = joint.seen[k] == 1;
+      BoundaryPlace& place = joint.place[k];
+      place = start ? BoundaryPlace{place.edge, 0x1p-1022}
+                    : BoundaryPlace{(place.edge + 2) % 3, 1.0 - u};
+      joint.seen[k] = 0;
+      joint.lo[k] = start ? 0.0 : std::min(place.s, 1.0 - joint.error[k]);
+      joint.hi[k] = start ? std::max(place.s, std::min(1.0, joint.error[k])) : 1.0;
+    }
+    if (moved && !is_corner(joint.place[0]) && !is_corner(joint.place[1]))
+      joint.sign = joint.seen_sign;
+  }
+}
+
+/// Narrows the interval of each parameter to where that side meets the box of what the interval of
+/// the other leaves of the other side.
+void Arrangement::tighten(std::int32_t i) {
+  BoundaryJoint& joint = joints_[static_cast<std::size_t>(i)];
+  for (const int k : {0, 1}) {
+    if (is_corner(joint.place[at(k)])) continue;
+    const BoundaryPlace& other = joint.place[at(1 - k)];
+    Box2 box;
+    if (is_corner(other))
+      box.include(sides(1 - k).corner(other.edge));
+    else
+      box = part_box(sides(1 - k).cache(other.edge), joint.lo[at(1 - k)], joint.hi[at(1 - k)]);
+    const CurveCache& side = sides(k).cache(joint.place[at(k)].edge);
+    const double magnitude = std::max(side.magnitude, sides(1 - k).cache(other.edge).magnitude);
+    // de Casteljau's algorithm, twice for either, and some more.
+    const double slack = 16.0 * 41.0 * u * magnitude;
+    box.lo -= Vec2{{slack, slack}};
+    box.hi += Vec2{{slack, slack}};
+    double lo = joint.lo[at(k)], hi = joint.hi[at(k)];
+    // The largest dyadic steps from either end that certainly miss the box.
+    for (double step = 0.5 * (hi - lo); step > 0x1p-40; step *= 0.5) {
+      if (lo + step < joint.place[at(k)].s && !part_box(side, lo, lo + step).overlaps(box))
+        lo += step;
+      if (hi - step > joint.place[at(k)].s && !part_box(side, hi - step, hi).overlaps(box))
+        hi -= step;
+    }
+    joint.lo[at(k)] = lo;
+    joint.hi[at(k)] = hi;
+  }
+}
+
 bool Arrangement::sort_joints() {
   for (int k = 0; k < 2; ++k) {
     std::vector<std::int32_t>& order = order_[at(k)];
@@ -254,7 +315,11 @@ bool Arrangement::sort_joints() {
       return before(joint(i).place[at(k)], joint(j).place[at(k)]);
     });
     for (std::size_t i = 1; i < order.size(); ++i)
-      if (!apart(k, order[i - 1], order[i]) && !order_pair(k, i - 1)) return false;
+      if (!apart(k, order[i - 1], order[i])) {
+        tighten(order[i - 1]);
+        tighten(order[i]);
+        if (!apart(k, order[i - 1], order[i]) && !order_pair(k, i - 1)) return false;
+      }
   }
   return true;
 }

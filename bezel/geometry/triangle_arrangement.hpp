@@ -39,6 +39,10 @@ struct BoundaryJoint {
   std::array<double, 2> lo, hi;  ///< the true parameters are between these; corners: equal
   int sign;    ///< of cross(a', b') where a side simply crosses a side, proven; 0: nothing known
   Vec2 point;  ///< for corners the corner
+  // While the joints are gathered:
+  std::array<std::uint8_t, 2> seen;  ///< corners: from its side's start (1), its side's end (2)
+  std::array<double, 2> error;       ///< of the computed parameters
+  int seen_sign;                     ///< of the crossing at a corner
 };
 
 enum class PartClass : std::uint8_t { inside, outside, along, against };
@@ -77,7 +81,9 @@ class Arrangement {
   bool add_contact(const BoundaryJoint& contact);
   bool join(BoundaryJoint& joint, const BoundaryJoint& contact);
   const BoundaryJoint& joint(std::int32_t i) const { return joints_[static_cast<std::size_t>(i)]; }
+  void settle_corners();
   bool sort_joints();
+  void tighten(std::int32_t i);
   bool apart(int k, std::int32_t i, std::int32_t j) const;
   bool order_pair(int k, std::size_t i);
   bool classify(int k);
