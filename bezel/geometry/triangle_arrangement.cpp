@@ -112,9 +112,15 @@ bool Arrangement::build(const TriangleSides& a, const TriangleSides& b,
   parts_[1].clear();
   corner_inside_ = {};
   reason_.clear();
-  for (int i = 0; i < 3; ++i)
+  const Vec2 reach{{coincidence_distance, coincidence_distance}};
+  for (int i = 0; i < 3; ++i) {
+    Box2 box = a.cache(i).box;
+    box.lo -= reach;
+    box.hi += reach;
+    if (!box.overlaps(b.box())) continue;
     for (int j = 0; j < 3; ++j)
-      if (!meet(i, j, coincidence_distance)) return false;
+      if (box.overlaps(b.cache(j).box) && !meet(i, j, coincidence_distance)) return false;
+  }
   if (joints_.empty()) {
     // One contains the other, or they are apart; corners decide.
     for (int k = 0; k < 2; ++k) {
@@ -309,11 +315,15 @@ void Arrangement::tighten(std::int32_t i) {
 bool Arrangement::sort_joints() {
   for (int k = 0; k < 2; ++k) {
     std::vector<std::int32_t>& order = order_[at(k)];
-    order.resize(joints_.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::int32_t>(i);
-    std::sort(order.begin(), order.end(), [&](std::int32_t i, std::int32_t j) {
-      return before(joint(i).place[at(k)], joint(j).place[at(k)]);
-    });
+    order.clear();
+    for (std::size_t i = 0; i < joints_.size(); ++i) {  // few: insertion is quickest
+      const auto name = static_cast<std::int32_t>(i);
+      order.push_back(name);
+      for (std::size_t j = i; j > 0; --j) {
+        if (!before(joint(name).place[at(k)], joint(order[j - 1]).place[at(k)])) break;
+        std::swap(order[j], order[j - 1]);
+      }
+    }
     for (std::size_t i = 1; i < order.size(); ++i)
       if (!apart(k, order[i - 1], order[i])) {
         tighten(order[i - 1]);
