@@ -51,6 +51,42 @@ TEST(TriangleRegions, OfTrianglesOnALattice) {
   EXPECT_LE(unresolved, 0);
 }
 
+TEST(TriangleRegions, ScaleByPowersOfTwo) {
+  RandomStream random("TriangleRegions.ScaleByPowersOfTwo", 1);
+  for (int i = 0; i < 300; ++i) {
+    const int g = 1 + static_cast<int>(random.below(4));
+    const bool lattice = random.below(2) == 0;
+    const auto triangle = [&] {
+      return lattice ? support::lattice_triangle(random, g, 4)
+                     : support::random_triangle(random, g, 1.0, {{random.uniform(), 0.3}}, 0.5);
+    };
+    const CurvedTriangle a = triangle(), b = triangle();
+    const auto found = intersect(a, b);
+    for (const double scale : {0x1p-300, 0x1p200}) {
+      CurvedTriangle p = a, q = b;
+      for (CurvedTriangle* t : {&p, &q})
+        for (Vec2& c : t->control) c *= scale;
+      const auto scaled = intersect(p, q);
+      ASSERT_EQ(scaled.relation, found.relation) << show(a, b, found);
+      ASSERT_EQ(scaled.polygons.size(), found.polygons.size()) << show(a, b, found);
+      EXPECT_NEAR(support::total_area(scaled.polygons) / scale / scale,
+                  support::total_area(found.polygons), 1e-13)
+          << show(a, b, found);
+    }
+  }
+}
+
+TEST(TriangleRegions, OfHighDegree) {
+  RandomStream random("TriangleRegions.OfHighDegree", 1);
+  for (const int g : {7, 12, 20, 40}) {
+    const CurvedTriangle a = support::random_triangle(random, g, 1.0, {}, 0.2),
+                         b = support::random_triangle(random, 5, 1.0, {{0.5, 0.3}}, 0.2);
+    const auto result = check_regions(a, b, random, 2);
+    EXPECT_FALSE(result.unresolved) << show(a, b, intersect(a, b));
+    EXPECT_EQ(result.wrong, "") << show(a, b, intersect(a, b));
+  }
+}
+
 using RationalPoint = std::array<mpq_class, 2>;
 
 mpq_class rational_area(const std::vector<RationalPoint>& p) {
