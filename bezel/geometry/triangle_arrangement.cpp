@@ -152,7 +152,16 @@ bool Arrangement::meet(int i, int j, double coincidence_distance) {
     const UnresolvedBox& box = found_.unresolved.front();
     return fail(box.reason.c_str(), part_box(a, box.s_lo, box.s_hi));
   }
+  // A polygon is no better than its joints: both sides must agree there to rounding.
+  const double apart = 2.0 * coincidence_distance + 0x1p-40 * std::max(a.magnitude, b.magnitude);
   for (const Crossing& c : found_.crossings) {
+    const Vec2 gap = c.point_a - c.point_b;
+    if (!(std::max(std::fabs(gap.x()), std::fabs(gap.y())) <= apart)) {
+      Box2 where;
+      where.include(c.point_a);
+      where.include(c.point_b);
+      return fail("a common point of two sides is not known well enough", where);
+    }
     // Where a corner lies on a side only that side's speed counts, else the angle as well.
     const bool corner = is_end(c.s) || is_end(c.t);
     const auto error = [&](const CurveCache& side, double at) {
