@@ -1,0 +1,51 @@
+// What curves share, as marks of a picture.
+
+#include "bezel/geometry/curve_shape.hpp"
+#include "bezel/view/draw_curves.hpp"
+
+namespace bezel {
+namespace {
+
+/// Bands and marks with numbers that go on.
+class Marks {
+ public:
+  Marks(CurvePicture& picture, int first) : picture_(picture), next_(first) {}
+  int next() const { return next_; }
+
+  void mark(MarkKind kind, const Vec2& point) {
+    picture_.marks.push_back({kind, point, std::to_string(next_++)});
+  }
+  void add(const std::vector<Vec2>& a, const CurveIntersections& found) {
+    const Curve curve(a);
+    for (const Crossing& c : found.crossings) mark(MarkKind::crossing, c.point_a);
+    for (const Tangency& t : found.tangencies) mark(MarkKind::tangency, curve(t.s));
+    for (const Overlap& o : found.overlaps)
+      picture_.bands.push_back({specialize(a, o.s0, o.s1), std::to_string(next_++)});
+    for (const UnresolvedBox& u : found.unresolved)
+      mark(MarkKind::unresolved, curve(0.5 * (u.s_lo + u.s_hi)));
+  }
+
+ private:
+  CurvePicture& picture_;
+  int next_;
+};
+
+}  // namespace
+
+int add_intersections(CurvePicture& picture, const std::vector<Vec2>& a,
+                      const CurveIntersections& found, int first) {
+  Marks marks(picture, first);
+  marks.add(a, found);
+  return marks.next();
+}
+
+int add_self_intersections(CurvePicture& picture, const std::vector<Vec2>& curve,
+                           const SelfIntersections& found, int first) {
+  Marks marks(picture, first);
+  const Curve c(curve);
+  for (const Cusp& cusp : found.cusps) marks.mark(MarkKind::cusp, c(cusp.s));
+  marks.add(curve, found.pairs);
+  return marks.next();
+}
+
+}  // namespace bezel
