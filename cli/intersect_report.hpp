@@ -1,0 +1,42 @@
+#pragma once
+// What `intersect` says about curves and about triangles: JSON, a table, and a picture.
+
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "bezel/view/draw_curves.hpp"
+#include "cli/output.hpp"
+#include "cli/shapes.hpp"
+
+namespace bezel::cli {
+
+struct ReportOptions {
+  std::string file;  ///< for messages
+  double coincidence_distance = 0.0;
+  bool hex = false;
+  int threads = 0;
+};
+
+struct IntersectReport {
+  Json results = Json::array();  ///< one for each pair
+  std::string text;
+  CurvePicture picture;
+  std::size_t unresolved = 0;  ///< places that could not be decided
+};
+
+/// Curves, pair by pair, or one curve with itself.
+/// @throws InputError with the file and the names of the curves
+IntersectReport report_curves(const Shapes& input, const ReportOptions& options);
+
+/// "2 crossings, 1 tangency" of all that is not 0; `nothing` when all are.
+std::string summary(const std::vector<std::pair<std::size_t, const char*>>& counts,
+                    const std::string& nothing);
+
+/// "NAME and NAME", or "pair 3" of an input in pairs.
+std::string pair_name(const Shapes& input, std::size_t pair);
+
+/// [x, y].
+Json point_json(const Vec2& point, bool hex);
+
+}  // namespace bezel::cli
