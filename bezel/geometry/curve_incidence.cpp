@@ -67,13 +67,22 @@ class Search {
   /// Of the curve with control points plus - minus and the origin.
   Search(std::span<const Vec2> plus, std::span<const Vec2> minus)
       : plus_(plus), minus_(minus), d_(static_cast<int>(plus.size()) - 1) {}
+  /// Of a curve and a point.
+  Search(std::span<const Vec2> plus, const Vec2& p)
+      : plus_(plus), point_(p), d_(static_cast<int>(plus.size()) - 1) {}
+  Search(std::span<const Vec2> plus, const ExactCurvePoint& p)
+      : plus_(plus),
+        point_(p.rounded()),
+        exact_(&p),
+        d_(static_cast<int>(plus.size()) - 1),
+        shift_(p.error()) {}
 
   PointOnCurve run() {
     PointBuffer<max_curve_points> storage;
     Vec2* c = storage.data();
     for (int i = 0; i <= d_; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      c[i] = plus_[k] - minus_[k];
+      c[i] = plus_[k] - minus(k);
       largest_ = std::max({largest_, std::fabs(c[i].x()), std::fabs(c[i].y())});
     }
     if (largest_ < 0x1p1000)
@@ -94,10 +103,17 @@ class Search {
   }
 
  private:
+  const Vec2& minus(std::size_t k) const { return minus_.empty() ? point_ : minus_[k]; }
+  Dyadic exact_minus(std::size_t k, int axis) const {
+    return exact_ != nullptr ? exact_->exact()[static_cast<std::size_t>(axis)]
+                             : Dyadic(minus(k)[axis]);
+  }
+
   /// c: the control points of the piece minus p, each coordinate within (1 + d level) u largest
-  /// (1 + 2^-20) of the exact one: one rounding for the difference, d for each halving.
+  /// (1 + 2^-20) of the exact one, and the error of p: one rounding for the difference, d for each
+  /// halving.
   void search(const Vec2* c, double lo, double hi, int level) {
-    const double error = (2.0 + d_ * level) * u * largest_ + tiny;
+    const double error = (2.0 + d_ * level) * u * largest_ + tiny + shift_;
     const Box2 box = control_box(d_, c);
     if (box.lo.y() > error || box.hi.y() < -error || box.hi.x() < -error) return;
     if (box.lo.x() > error) {
@@ -129,8 +145,8 @@ class Search {
     if (y_) return;
     Exact x, y;
     for (std::size_t i = 0; i < plus_.size(); ++i) {
-      x.push_back(Dyadic(plus_[i].x()) - Dyadic(minus_[i].x()));
-      y.push_back(Dyadic(plus_[i].y()) - Dyadic(minus_[i].y()));
+      x.push_back(Dyadic(plus_[i].x()) - exact_minus(i, 0));
+      y.push_back(Dyadic(plus_[i].y()) - exact_minus(i, 1));
     }
     // One coordinate a multiple of the other (or zero): they share all roots.
     std::size_t k = 0;
@@ -197,7 +213,10 @@ class Search {
   }
 
   std::span<const Vec2> plus_, minus_;
+  Vec2 point_;                              // when minus_ is empty
+  const ExactCurvePoint* exact_ = nullptr;  // what point_ stands for
   int d_;
+  double shift_ = 0.0;  // bound of the difference between the two
   double largest_ = 0.0;
   bool dependent_ = false;
   std::optional<bernstein::ExactPolynomial> x_, y_;
@@ -207,8 +226,34 @@ class Search {
 }  // namespace
 
 PointOnCurve point_on_curve(std::span<const Vec2> curve, const Vec2& p) {
-  const std::vector<Vec2> minus(curve.size(), p);
-  return Search(curve, minus).run();
+  return Search(curve, p).run();
+}
+
+PointOnCurve point_on_curve(std::span<const Vec2> curve, const ExactCurvePoint& p) {
+  return Search(curve, p).run();
+}
+
+// de Casteljau's algorithm: within 3 d u max|b|, as bernstein::evaluate.
+ExactCurvePoint::ExactCurvePoint(std::span<const Vec2> curve, double s)
+    : curve_(curve),
+      s_(s),
+      rounded_(curve_point(static_cast<int>(curve.size()) - 1, curve.data(), s).value) {
+  double largest = 0.0;
+  for (const Vec2& c : curve) largest = std::max({largest, std::fabs(c.x()), std::fabs(c.y())});
+  error_ =
+      s == 0.0 || s == 1.0 ? 0.0 : 3.0 * static_cast<double>(curve.size()) * u * largest + tiny;
+}
+
+const std::array<Dyadic, 2>& ExactCurvePoint::exact() const {
+  if (!exact_) {
+    std::array<std::vector<Dyadic>, 2> b;
+    for (const Vec2& c : curve_)
+      for (const int axis : {0, 1}) b[static_cast<std::size_t>(axis)].emplace_back(c[axis]);
+    const Dyadic s(s_);
+    exact_ = std::array<Dyadic, 2>{bernstein::ExactPolynomial(std::span<const Dyadic>(b[0]))(s),
+                                   bernstein::ExactPolynomial(std::span<const Dyadic>(b[1]))(s)};
+  }
+  return *exact_;
 }
 
 std::vector<Incidence> vanishing_speed(std::span<const Vec2> curve) {

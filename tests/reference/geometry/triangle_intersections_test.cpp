@@ -1,0 +1,131 @@
+// The triangle pairs of dhermes/bezier (tests/reference/data/bezier/SOURCE.md) against their
+// answers.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "bezel/bernstein/index.hpp"
+#include "bezel/geometry/triangle_intersection.hpp"
+
+namespace {
+
+using bezel::CurvedPolygon;
+using bezel::TriangleRelation;
+using bezel::Vec2;
+using nlohmann::json;
+
+json load(const std::string& name) {
+  std::ifstream in(std::string(BEZEL_REFERENCE_DATA) + "/" + name);
+  EXPECT_TRUE(in.good()) << name;
+  return json::parse(in);
+}
+
+double number(const json& j) {
+  if (j.is_number()) return j.get<double>();
+  const std::string text = j.get<std::string>();
+  const auto slash = text.find('/');
+  if (slash == std::string::npos) return std::strtod(text.c_str(), nullptr);  // hex float
+  return std::strtod(text.substr(0, slash).c_str(), nullptr) /
+         std::strtod(text.substr(slash + 1).c_str(), nullptr);
+}
+
+struct Triangle {
+  int degree = 1;
+  std::vector<Vec2> control;
+};
+
+Triangle triangle(const json& triangles, const std::string& id) {
+  const json& points = triangles.at(id).at("control_points");
+  Triangle out;
+  for (std::size_t i = 0; i < points.at(0).size(); ++i)
+    out.control.push_back(Vec2{{number(points.at(0).at(i)), number(points.at(1).at(i))}});
+  while (bezel::bernstein::triangle_size(out.degree) < static_cast<int>(out.control.size()))
+    ++out.degree;
+  return out;
+}
+
+std::string show(const bezel::TriangleIntersections& found) {
+  std::ostringstream text;
+  text.precision(17);
+  text << "relation " << static_cast<int>(found.relation) << " " << found.reason;
+  for (const CurvedPolygon& p : found.polygons) {
+    text << "\n  polygon";
+    for (const auto& e : p.edges()) {
+      const Vec2 v = p.vertices()[static_cast<std::size_t>(e.vertex)].point;
+      text << "\n    " << e.triangle * 3 + e.edge << " " << e.s0 << " " << e.s1 << " from ("
+           << v.x() << ", " << v.y() << ")";
+    }
+  }
+  return text.str();
+}
+
+/// Sides 0 to 2 are the first triangle's, 3 to 5 the second's. Whether polygon p, from its edge
+/// `shift` on, is the expected one.
+bool agrees(const CurvedPolygon& p, std::size_t shift, const json& expected) {
+  const json &edges = expected.at("edge_list"), &starts = expected.at("start_params"),
+             &ends = expected.at("end_params"), &nodes = expected.at("nodes");
+  const std::size_t n = p.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto& e = p.edges()[(i + shift) % n];
+    const Vec2 v = p.vertices()[static_cast<std::size_t>(e.vertex)].point;
+    if (e.triangle * 3 + e.edge != edges.at(i).get<int>() ||
+        !(std::fabs(e.s0 - number(starts.at(i))) <= 1e-12) ||
+        !(std::fabs(e.s1 - number(ends.at(i))) <= 1e-12) ||
+        !(std::fabs(v.x() - number(nodes.at(i).at(0))) <= 1e-14) ||
+        !(std::fabs(v.y() - number(nodes.at(i).at(1))) <= 1e-14))
+      return false;
+  }
+  return true;
+}
+
+bool agrees(const CurvedPolygon& p, const json& expected) {
+  if (p.size() != expected.at("edge_list").size() || p.vertices().size() != p.size()) return false;
+  for (std::size_t shift = 0; shift < p.size(); ++shift)
+    if (agrees(p, shift, expected)) return true;
+  return false;
+}
+
+TEST(TrianglePairs, AgreeWithTheReference) {
+  const json triangles = load("triangles.json"), cases = load("triangle_intersections.json");
+  ASSERT_EQ(cases.size(), 36u);
+  for (const json& c : cases) {
+    SCOPED_TRACE("case " + std::to_string(c.at("id").get<int>()));
+    const Triangle a = triangle(triangles, c.at("triangle1")),
+                   b = triangle(triangles, c.at("triangle2"));
+    const auto found = bezel::intersect(a.degree, a.control, b.degree, b.control);
+    const json& expected = c.at("intersections");
+    if (expected.size() == 1 && expected.at(0).is_boolean()) {
+      if (expected.at(0).get<bool>())
+        EXPECT_TRUE(found.relation == TriangleRelation::first_in_second ||
+                    found.relation == TriangleRelation::same)
+            << show(found);
+      else
+        EXPECT_EQ(found.relation, TriangleRelation::second_in_first) << show(found);
+      continue;
+    }
+    if (expected.empty()) {
+      EXPECT_TRUE(found.relation == TriangleRelation::disjoint ||
+                  found.relation == TriangleRelation::touching)
+          << show(found);
+      continue;
+    }
+    EXPECT_EQ(found.relation, TriangleRelation::overlapping) << show(found);
+    EXPECT_EQ(found.polygons.size(), expected.size()) << show(found);
+    for (const json& polygon : expected)
+      EXPECT_EQ(std::count_if(found.polygons.begin(), found.polygons.end(),
+                              [&](const CurvedPolygon& p) { return agrees(p, polygon); }),
+                1)
+          << polygon.dump() << "\n"
+          << show(found);
+  }
+}
+
+}  // namespace
