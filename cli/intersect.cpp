@@ -37,7 +37,8 @@ int run(const IntersectCommand& options, const Context& context) {
     note(context, fmt::format("{}: {} rounded to the nearest double", text.name,
                               counted(input.rounded, "rational number")));
   const ReportOptions how{text.name, options.coincidence_distance, options.hex, context.threads};
-  const IntersectReport report = report_curves(input, how);
+  const IntersectReport report =
+      input.shapes[0].triangle ? report_triangles(input, how) : report_curves(input, how);
   if (!options.out.empty()) draw_curves(options.out, report.picture, options.draw);
   const Json object{
       {"schema", "bezel/intersect/1"},

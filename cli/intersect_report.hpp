@@ -29,6 +29,10 @@ struct IntersectReport {
 /// @throws InputError with the file and the names of the curves
 IntersectReport report_curves(const Shapes& input, const ReportOptions& options);
 
+/// Triangles, pair by pair.
+/// @throws InputError with file, line and name for a triangle that is inverted somewhere
+IntersectReport report_triangles(const Shapes& input, const ReportOptions& options);
+
 /// "2 crossings, 1 tangency" of all that is not 0; `nothing` when all are.
 std::string summary(const std::vector<std::pair<std::size_t, const char*>>& counts,
                     const std::string& nothing);

@@ -53,7 +53,6 @@ class Reader {
       check_keys(item, where, {"control", "degree", "name"});
       Shape shape;
       shape.triangle = triangle;
-      shape.name = where;
       shape.control = points(required(item, where, "control"), where);
       finish(shape, item, where);
     }
@@ -85,7 +84,6 @@ class Reader {
       fail(item, where, "expected one of the keys \"curve\" and \"triangle\"");
     Shape shape;
     shape.triangle = curve == nullptr;
-    shape.name = where;
     shape.control = coordinates(curve ? *curve : *triangle, where);
     finish(shape, item, where);
   }
@@ -149,6 +147,8 @@ class Reader {
 
   /// Degree and name, and whether the number of control points is right.
   void finish(Shape& shape, const JsonValue& item, const std::string& where) {
+    shape.line = item.line;
+    shape.place = shape.name = where;
     const std::size_t n = shape.control.size();
     const int most =
         shape.triangle ? bernstein::max_triangle_degree : bernstein::max_interval_degree;

@@ -2,6 +2,7 @@
 // Curves and curved triangles as `intersect` reads them: JSON.
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,7 +17,9 @@ struct Shape {
   bool triangle = false;
   int degree = 0;
   std::vector<Vec2> control;  ///< finite, as many as the degree asks for
-  std::string name;           ///< as given, or "curve 0", "triangle 1"; in pairs "pair 0, a"
+  std::int64_t line = 0;      ///< where it begins in the file
+  std::string place;          ///< "curve 0", "triangle 1", "pair 0, a"
+  std::string name;           ///< as given, or the place
 };
 
 /// What one file asks for.

@@ -1,5 +1,8 @@
-// What curves share, as marks of a picture.
+// What curves and triangles share, as marks and regions of a picture.
 
+#include <utility>
+
+#include "bezel/bernstein/index.hpp"
 #include "bezel/geometry/curve_shape.hpp"
 #include "bezel/view/draw_curves.hpp"
 
@@ -45,6 +48,31 @@ int add_self_intersections(CurvePicture& picture, const std::vector<Vec2>& curve
   const Curve c(curve);
   for (const Cusp& cusp : found.cusps) marks.mark(MarkKind::cusp, c(cusp.s));
   marks.add(curve, found.pairs);
+  return marks.next();
+}
+
+DrawnShape drawn_triangle(std::string name, int g, std::span<const Vec2> control) {
+  DrawnShape shape{std::move(name), {}, true};
+  for (int side = 0; side < 3; ++side) {
+    shape.curves.emplace_back();
+    for (int m = 0; m <= g; ++m)
+      shape.curves.back().push_back(
+          control[static_cast<std::size_t>(bernstein::triangle_side_index(g, side, m))]);
+  }
+  return shape;
+}
+
+int add_polygons(CurvePicture& picture, std::span<const CurvedPolygon> polygons, int first) {
+  Marks marks(picture, first);
+  for (const CurvedPolygon& polygon : polygons) {
+    DrawnRegion region;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const std::span<const Vec2> control = polygon.control(i);
+      marks.mark(MarkKind::vertex, control[0]);
+      region.curves.emplace_back(control.begin(), control.end());
+    }
+    picture.regions.push_back(std::move(region));
+  }
   return marks.next();
 }
 

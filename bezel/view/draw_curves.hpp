@@ -2,10 +2,12 @@
 // Pictures of Bezier curves, of curved polygons, and of the points they share: SVG and PNG.
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "bezel/geometry/curve.hpp"
+#include "bezel/geometry/curved_polygon.hpp"
 #include "bezel/geometry/self_intersection.hpp"
 #include "bezel/numeric/vec.hpp"
 
@@ -69,5 +71,13 @@ int add_intersections(CurvePicture& picture, const std::vector<Vec2>& a,
 /// Adds the cusps of a curve and where it meets itself, in this order, as add_intersections.
 int add_self_intersections(CurvePicture& picture, const std::vector<Vec2>& curve,
                            const SelfIntersections& found, int first = 1);
+
+/// The three sides of a curved triangle, filled. @param control  triangle_size(g) points, 1 <= g
+DrawnShape drawn_triangle(std::string name, int g, std::span<const Vec2> control);
+
+/// Adds curved polygons as regions, and their vertices as marks, with labels counted on from
+/// `first`, polygon by polygon in the order of their edges.
+/// @return the number after the last
+int add_polygons(CurvePicture& picture, std::span<const CurvedPolygon> polygons, int first = 1);
 
 }  // namespace bezel
