@@ -372,16 +372,17 @@ class Drawing {
   void draw_marker(Canvas& canvas, MarkKind kind, const Vec2& at) const {
     Path path;
     if (kind == MarkKind::vertex) {
-      path.circle(at, 3.6 * unit_);
+      path.circle(at, 0.8 * marker_radius());
       canvas.fill(path, view::ink);
       return;
     }
     view::add_marker(path, shape_of(kind), at, marker_radius());
     canvas.fill(path, white);
-    canvas.stroke(path,
-                  {kind == MarkKind::unresolved ? unresolved_colour : view::ink, 1.5 * unit_});
+    canvas.stroke(path, {kind == MarkKind::unresolved ? unresolved_colour : view::ink,
+                         (labelled() ? 1.5 : 0.8) * unit_});
   }
-  double marker_radius() const { return 4.6 * unit_; }
+  bool labelled() const { return picture_.marks.size() + picture_.bands.size() <= most_labels; }
+  double marker_radius() const { return (labelled() ? 4.6 : 2.0) * unit_; }
 
   /// A label and what it belongs to, in pixels.
   struct Label {
@@ -394,15 +395,14 @@ class Drawing {
 
   void draw_marks(Canvas& canvas) const {
     std::vector<Label> labels;
-    const bool labelled = picture_.marks.size() + picture_.bands.size() <= most_labels;
     for (const DrawnMark& mark : picture_.marks) {
       const Vec2 at = pixel(mark.point);
       const auto same =
-          labelled ? std::find_if(labels.begin(), labels.end(),
-                                  [&](const Label& l) {
-                                    return l.kind == mark.kind && norm(l.at - at) < 2.5 * unit_;
-                                  })
-                   : labels.end();
+          labelled() ? std::find_if(labels.begin(), labels.end(),
+                                    [&](const Label& l) {
+                                      return l.kind == mark.kind && norm(l.at - at) < 2.5 * unit_;
+                                    })
+                     : labels.end();
       if (same == labels.end()) {
         labels.push_back({at, mark.label, mark.kind, false, 1});
       } else if (++same->merged <= 4) {
@@ -412,7 +412,7 @@ class Drawing {
       }
     }
     for (const Label& l : labels) draw_marker(canvas, l.kind, l.at);
-    if (!labelled) return;
+    if (!labelled()) return;
     for (const DrawnBand& band : picture_.bands)
       labels.push_back({pixel(Curve(band.curve)(0.5)), band.label, MarkKind::crossing, true, 1});
     LabelPlacer placer(frame_);

@@ -54,7 +54,8 @@ struct CurveDrawOptions {
 /// Draws curves, regions and marks with axes and a legend to a .svg or .png file (by extension),
 /// atomically. Both axes have one scale. What is shown are the curves; control polygons that reach
 /// far beyond them are cut at the frame. Labels keep off lines, marks and each other where there is
-/// room; marks of one kind at one place share a marker; more than 400 marks have no labels.
+/// room; marks of one kind at one place share a marker; more than 400 marks are small and have no
+/// labels.
 ///
 /// @throws InputError for an unknown extension or a bad width, nothing to draw, control points that
 ///         are not 1 to 61 finite ones, and coordinates beyond 1e280, or spread over less than
