@@ -32,12 +32,15 @@ struct Parameter {
   bool end;
 };
 
-/// The computed parameter is within 4 u condition of the true one; twice that, inside the box.
-Parameter parameter_of(double s, double lo, double hi, double condition) {
-  if (lo == hi && (s == 0.0 || s == 1.0)) return {s, s, s, true};
+bool is_end(double s, double lo, double hi) {
+  return lo == hi && (s == 0.0 || s == 1.0);
+}
+
+/// The computed parameter is within half the error of the true one, which is in the box, too.
+Parameter parameter_of(double s, double lo, double hi, double error) {
+  if (is_end(s, lo, hi)) return {s, s, s, true};
   // A true parameter inside (0, 1) that is rounded to an end stays inside.
   s = std::clamp(s, std::numeric_limits<double>::min(), 1.0 - u);
-  const double error = 8.0 * u * std::max(1.0, condition);
   double least = std::max(0.0, s - error), most = std::min(1.0, s + error);
   if (lo < hi) {
     least = std::max(least, lo);
@@ -54,6 +57,15 @@ void set_place(BoundaryJoint& joint, int k, int side, const Parameter& p) {
     joint.place[i] = {side, p.s};
   joint.lo[i] = p.end ? 0.0 : p.lo;
   joint.hi[i] = p.end ? 0.0 : p.hi;
+}
+
+/// 1 when the control points are the same, -1 when in opposite order, 0 otherwise: neighbours in a
+/// mesh, or the same triangle. A side of a triangle that does not overlap itself meets itself
+/// nowhere else.
+int same_curve(std::span<const Vec2> a, std::span<const Vec2> b) {
+  if (a.size() != b.size()) return 0;
+  if (std::equal(a.begin(), a.end(), b.begin())) return 1;
+  return std::equal(a.begin(), a.end(), b.rbegin()) ? -1 : 0;
 }
 
 Box2 part_box(const CurveCache& side, double s0, double s1) {
@@ -115,14 +127,31 @@ bool Arrangement::build(const TriangleSides& a, const TriangleSides& b,
 
 bool Arrangement::meet(int i, int j, double coincidence_distance) {
   const CurveCache &a = sides(0).cache(i), &b = sides(1).cache(j);
-  intersect(a, b, {coincidence_distance}, found_);
+  const int same = same_curve(a.control, b.control);
+  if (same != 0) {
+    found_ = CurveIntersections();
+    found_.overlaps.push_back({0.0, 1.0, same > 0 ? 0.0 : 1.0, same > 0 ? 1.0 : 0.0, 0.0});
+  } else {
+    intersect(a, b, {coincidence_distance}, found_);
+  }
   if (!found_.unresolved.empty()) {
     const UnresolvedBox& box = found_.unresolved.front();
     return fail(box.reason.c_str(), part_box(a, box.s_lo, box.s_hi));
   }
   for (const Crossing& c : found_.crossings) {
-    const Parameter s = parameter_of(c.s, c.s_lo, c.s_hi, c.condition),
-                    t = parameter_of(c.t, c.t_lo, c.t_hi, c.condition);
+    // Where a corner lies on a side only that side's speed counts, else the angle as well.
+    const bool corner = is_end(c.s, c.s_lo, c.s_hi) || is_end(c.t, c.t_lo, c.t_hi);
+    const auto error = [&](const CurveCache& side, double at) {
+      double amplification = c.condition;
+      if (corner) {
+        const int d = static_cast<int>(side.control.size()) - 1;
+        amplification = 8.0 * std::max(a.magnitude, b.magnitude) /
+                        norm(curve_point(d, side.control.data(), at).derivative);
+      }
+      return 8.0 * u * std::max(1.0, amplification);
+    };
+    const Parameter s = parameter_of(c.s, c.s_lo, c.s_hi, error(a, c.s)),
+                    t = parameter_of(c.t, c.t_lo, c.t_hi, error(b, c.t));
     BoundaryJoint joint{};
     set_place(joint, 0, i, s);
     set_place(joint, 1, j, t);
