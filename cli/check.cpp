@@ -8,6 +8,7 @@
 #include "cli/arguments.hpp"
 #include "cli/output.hpp"
 #include "cli/overlaps.hpp"
+#include "cli/progress_bar.hpp"
 #include "cli/validity.hpp"
 
 namespace bezel::cli {
@@ -72,9 +73,10 @@ std::vector<Defect> edge_defects(const TriangleMesh& mesh, const MeshValidity& v
 }
 
 std::vector<Defect> overlap_defects(const TriangleMesh& mesh, const MeshValidity& validity,
-                                    int threads) {
+                                    const Context& context) {
   std::vector<Defect> defects;
-  for (const ElementOverlap& o : find_overlaps(mesh, validity, threads)) {
+  ProgressBar bar(context, "check");
+  for (const ElementOverlap& o : find_overlaps(mesh, validity, context.threads, bar.callback())) {
     const std::string where = fmt::format("({:.6g}, {:.6g})", o.place[0], o.place[1]);
     defects.push_back(
         {o.decided ? "overlap" : "undecided_overlap",
@@ -95,7 +97,7 @@ int run(const CheckOptions& options, const Context& context) {
   std::vector<Defect> defects = element_defects(mesh, validity);
   for (Defect& defect : edge_defects(mesh, validity)) defects.push_back(std::move(defect));
   if (options.overlaps)
-    for (Defect& defect : overlap_defects(mesh, validity, context.threads))
+    for (Defect& defect : overlap_defects(mesh, validity, context))
       defects.push_back(std::move(defect));
 
   const std::size_t shown = std::min(options.limit, defects.size());

@@ -11,6 +11,7 @@
 #include "cli/intersect_report.hpp"
 #include "cli/json_text.hpp"
 #include "cli/polynomial_options.hpp"
+#include "cli/progress_bar.hpp"
 
 namespace bezel::cli {
 namespace {
@@ -21,6 +22,14 @@ struct IntersectCommand {
   bool hex = false;
   CurveDrawOptions draw;
 };
+
+IntersectReport report_on(const Shapes& input, const std::string& file,
+                          const IntersectCommand& options, const Context& context) {
+  ProgressBar bar(context, "intersect");
+  const ReportOptions how{file, options.coincidence_distance, options.hex, context.threads,
+                          bar.callback()};
+  return input.shapes[0].triangle ? report_triangles(input, how) : report_curves(input, how);
+}
 
 int run(const IntersectCommand& options, const Context& context) {
   if (!(options.coincidence_distance >= 0.0) || !std::isfinite(options.coincidence_distance))
@@ -36,9 +45,7 @@ int run(const IntersectCommand& options, const Context& context) {
   if (input.rounded > 0)
     note(context, fmt::format("{}: {} rounded to the nearest double", text.name,
                               counted(input.rounded, "rational number")));
-  const ReportOptions how{text.name, options.coincidence_distance, options.hex, context.threads};
-  const IntersectReport report =
-      input.shapes[0].triangle ? report_triangles(input, how) : report_curves(input, how);
+  const IntersectReport report = report_on(input, text.name, options, context);
   if (!options.out.empty()) draw_curves(options.out, report.picture, options.draw);
   const Json object{
       {"schema", "bezel/intersect/1"},

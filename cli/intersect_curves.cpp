@@ -2,13 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "bezel/base/error.hpp"
-#include "bezel/base/parallel.hpp"
 #include "bezel/geometry/self_intersection.hpp"
 #include "cli/intersect_report.hpp"
 #include "cli/polynomial_options.hpp"
@@ -114,27 +111,6 @@ std::string counts(const CurveIntersections& found, std::size_t cusps) {
                  "nothing in common");
 }
 
-/// Every pair, in parallel.
-std::vector<CurveIntersections> intersect_pairs(const Shapes& input, const ReportOptions& options) {
-  std::vector<CurveIntersections> found(input.pairs.size());
-  const IntersectOptions how{options.coincidence_distance};
-  constexpr std::size_t block = 64;
-  parallel_for(
-      (found.size() + block - 1) / block,
-      [&](std::size_t b) {
-        for (std::size_t i = b * block; i < std::min(found.size(), (b + 1) * block); ++i) {
-          const auto& [first, second] = input.pairs[i];
-          try {
-            found[i] = intersect(input.shapes[first].control, input.shapes[second].control, how);
-          } catch (const InputError& error) {
-            throw InputError(InputPlace{options.file, 0, pair_name(input, i), -1}, error.message());
-          }
-        }
-      },
-      options.threads);
-  return found;
-}
-
 void report_self(const Shape& shape, const ReportOptions& options, IntersectReport& out) {
   const SelfIntersections found = self_intersections(shape.control);
   int next = 1;
@@ -165,7 +141,10 @@ IntersectReport report_curves(const Shapes& input, const ReportOptions& options)
     report_self(input.shapes[0], options, out);
     return out;
   }
-  const std::vector<CurveIntersections> found = intersect_pairs(input, options);
+  const IntersectOptions how{options.coincidence_distance};
+  const auto found = meet_pairs<CurveIntersections>(
+      input, options,
+      [&](const Shape& a, const Shape& b) { return intersect(a.control, b.control, how); });
   int next = 1;
   bool any = false;
   for (std::size_t i = 0; i < found.size(); ++i) {

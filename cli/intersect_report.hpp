@@ -2,10 +2,15 @@
 // What `intersect` says about curves and about triangles: JSON, a table, and a picture.
 
 #include <cstddef>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "bezel/base/error.hpp"
+#include "bezel/base/progress.hpp"
 #include "bezel/view/draw_curves.hpp"
+#include "cli/for_all.hpp"
 #include "cli/output.hpp"
 #include "cli/shapes.hpp"
 
@@ -16,6 +21,7 @@ struct ReportOptions {
   double coincidence_distance = 0.0;
   bool hex = false;
   int threads = 0;
+  Progress progress;
 };
 
 struct IntersectReport {
@@ -42,5 +48,19 @@ std::string pair_name(const Shapes& input, std::size_t pair);
 
 /// [x, y].
 Json point_json(const Vec2& point, bool hex);
+
+/// meet(a, b) of every pair of shapes, in order. @throws InputError with the file and the pair
+template <class Found, class Meet>
+std::vector<Found> meet_pairs(const Shapes& input, const ReportOptions& options, Meet meet) {
+  std::vector<Found> found(input.pairs.size());
+  for_all(found.size(), 32, options.threads, options.progress, [&](std::size_t i) {
+    try {
+      found[i] = meet(input.shapes[input.pairs[i].first], input.shapes[input.pairs[i].second]);
+    } catch (const InputError& error) {
+      throw InputError(InputPlace{options.file, 0, pair_name(input, i), -1}, error.message());
+    }
+  });
+  return found;
+}
 
 }  // namespace bezel::cli

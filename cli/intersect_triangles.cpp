@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "bezel/base/error.hpp"
-#include "bezel/base/parallel.hpp"
 #include "bezel/geometry/triangle.hpp"
 #include "bezel/geometry/triangle_intersection.hpp"
 #include "cli/intersect_report.hpp"
@@ -144,28 +142,6 @@ void check_shapes(const Shapes& input, const std::string& file) {
   }
 }
 
-std::vector<TriangleIntersections> intersect_pairs(const Shapes& input,
-                                                   const ReportOptions& options) {
-  std::vector<TriangleIntersections> found(input.pairs.size());
-  const TriangleIntersectOptions how{options.coincidence_distance};
-  constexpr std::size_t block = 16;
-  parallel_for(
-      (found.size() + block - 1) / block,
-      [&](std::size_t k) {
-        for (std::size_t i = k * block; i < std::min(found.size(), (k + 1) * block); ++i) {
-          const Shape& a = input.shapes[input.pairs[i].first];
-          const Shape& b = input.shapes[input.pairs[i].second];
-          try {
-            found[i] = intersect(a.degree, a.control, b.degree, b.control, how);
-          } catch (const InputError& error) {
-            throw InputError(InputPlace{options.file, 0, pair_name(input, i), -1}, error.message());
-          }
-        }
-      },
-      options.threads);
-  return found;
-}
-
 /// Names that were not given are long in pairs: there the letter will do.
 std::string name_in_pair(const Shapes& input, std::size_t i, const char* letter) {
   const Shape& shape = input.shapes[i];
@@ -176,7 +152,11 @@ std::string name_in_pair(const Shapes& input, std::size_t i, const char* letter)
 
 IntersectReport report_triangles(const Shapes& input, const ReportOptions& options) {
   check_shapes(input, options.file);
-  const std::vector<TriangleIntersections> found = intersect_pairs(input, options);
+  const TriangleIntersectOptions how{options.coincidence_distance};
+  const auto found =
+      meet_pairs<TriangleIntersections>(input, options, [&](const Shape& a, const Shape& b) {
+        return intersect(a.degree, a.control, b.degree, b.control, how);
+      });
   IntersectReport out;
   for (const Shape& shape : input.shapes)
     out.picture.shapes.push_back(drawn_triangle(shape.name, shape.degree, shape.control));

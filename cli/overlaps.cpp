@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "bezel/base/parallel.hpp"
 #include "bezel/geometry/triangle_intersection.hpp"
 #include "bezel/mesh/bvh.hpp"
+#include "cli/for_all.hpp"
 
 namespace bezel::cli {
 namespace {
@@ -40,7 +40,7 @@ std::optional<ElementOverlap> overlap(int degree, const std::vector<Element>& el
 }  // namespace
 
 std::vector<ElementOverlap> find_overlaps(const TriangleMesh& mesh, const MeshValidity& validity,
-                                          int threads) {
+                                          int threads, const Progress& progress) {
   const std::size_t n = mesh.element_count();
   std::vector<Element> elements(n);
   std::vector<Box2> boxes(n);  // empty for elements that are not valid: never found
@@ -55,24 +55,17 @@ std::vector<ElementOverlap> find_overlaps(const TriangleMesh& mesh, const MeshVa
   }
   const Bvh tree(boxes);
   std::vector<std::vector<ElementOverlap>> found(n);
-  constexpr std::size_t block = 64;
-  parallel_for((n + block - 1) / block,
-               [&](std::size_t k) {
-                 std::vector<std::int32_t> near;
-                 for (std::size_t e = k * block; e < std::min(n, (k + 1) * block); ++e) {
-                   near.clear();
-                   tree.query(boxes[e], near);
-                   std::sort(near.begin(), near.end());
-                   for (const std::int32_t i : near) {
-                     const auto f = static_cast<std::size_t>(i);
-                     if (f <= e) continue;
-                     if (found[e].size() == most_of_an_element) break;
-                     if (const auto o = overlap(mesh.degree(), elements, e, f))
-                       found[e].push_back(*o);
-                   }
-                 }
-               },
-               threads);
+  for_all(n, 64, threads, progress, [&](std::size_t e) {
+    std::vector<std::int32_t> near;
+    tree.query(boxes[e], near);
+    std::sort(near.begin(), near.end());
+    for (const std::int32_t i : near) {
+      const auto f = static_cast<std::size_t>(i);
+      if (f <= e) continue;
+      if (found[e].size() == most_of_an_element) break;
+      if (const auto o = overlap(mesh.degree(), elements, e, f)) found[e].push_back(*o);
+    }
+  });
   std::vector<ElementOverlap> all;
   for (const auto& list : found) all.insert(all.end(), list.begin(), list.end());
   return all;

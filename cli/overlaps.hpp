@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bezel/base/progress.hpp"
 #include "bezel/numeric/vec.hpp"
 #include "cli/validity.hpp"
 
@@ -20,8 +21,8 @@ struct ElementOverlap {
 
 /// Pairs of valid elements with a common area above 1e-10 of the smaller one: hanging vertices, and
 /// sides written with fewer digits, make slivers below that. Sorted; at most 10 for each first
-/// element, so that the work is bounded.
+/// element, so that the work is bounded. @throws Interrupted
 std::vector<ElementOverlap> find_overlaps(const TriangleMesh& mesh, const MeshValidity& validity,
-                                          int threads);
+                                          int threads, const Progress& progress);
 
 }  // namespace bezel::cli

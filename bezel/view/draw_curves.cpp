@@ -107,7 +107,7 @@ std::optional<std::pair<Vec2, Vec2>> clipped(const Vec2& a, const Vec2& b, const
 }
 
 struct LegendEntry {
-  enum class Kind { line, net, band, region, mark } kind;
+  enum class Kind { line, net, band, region, mark, text } kind;
   std::string name;
   Colour colour{};
   MarkKind mark{};
@@ -181,9 +181,17 @@ class Drawing {
   // ---- Layout
 
   void make_legend() {
-    for (std::size_t i = 0; i < picture_.shapes.size() && legend_.size() < most_names; ++i)
-      if (!picture_.shapes[i].name.empty())
+    std::size_t unnamed = 0;
+    for (std::size_t i = 0; i < picture_.shapes.size(); ++i) {
+      if (picture_.shapes[i].name.empty()) continue;
+      if (legend_.size() < most_names) {
         legend_.push_back({LegendEntry::Kind::line, picture_.shapes[i].name, colours_[i]});
+      } else {
+        ++unnamed;
+      }
+    }
+    if (unnamed > 0)
+      legend_.push_back({LegendEntry::Kind::text, "and " + std::to_string(unnamed) + " more"});
     if (options_.control_polygons)
       legend_.push_back({LegendEntry::Kind::net, "control polygon", Colour{0.4, 0.4, 0.4, 1.0}});
     if (!picture_.regions.empty() && !picture_.region_name.empty())
@@ -201,7 +209,9 @@ class Drawing {
     return (sample_width(entry) + 7.0 + 18.0) * unit_ + 1.1 * view::text_width(entry.name, label_);
   }
   static double sample_width(const LegendEntry& entry) {
-    return entry.kind == LegendEntry::Kind::mark ? 12.0 : 26.0;
+    return entry.kind == LegendEntry::Kind::mark   ? 12.0
+           : entry.kind == LegendEntry::Kind::text ? 0.0
+                                                   : 26.0;
   }
 
   /// Where the entries stand, row by row, and the number of rows.
@@ -502,6 +512,8 @@ class Drawing {
         }
         case LegendEntry::Kind::mark:
           draw_marker(canvas, entry.mark, 0.5 * (left + right));
+          break;
+        case LegendEntry::Kind::text:
           break;
       }
       canvas.text(right + Vec2{{7.0 * unit_, 0.35 * label_.size}}, entry.name, label_);

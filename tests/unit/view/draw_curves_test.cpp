@@ -4,6 +4,7 @@
 #include <pugixml.hpp>
 
 #include "bezel/base/atomic_file.hpp"
+#include "bezel/geometry/triangle_intersection.hpp"
 #include "image.hpp"
 
 namespace bezel {
@@ -202,6 +203,44 @@ TEST(CurveMarks, NumbersGoOnInTheOrderOfTheLists) {
   EXPECT_EQ(add_self_intersections(self, cusp, self_intersections(cusp)), 2);
   EXPECT_EQ(self.marks[0].kind, MarkKind::cusp);
   EXPECT_EQ(self.marks[0].point, (Vec2{{0.5, 0.75}}));
+}
+
+TEST(CurveMarks, TrianglesHaveThreeSidesAndPolygonsTheirVertices) {
+  const std::vector<Vec2> a{Vec2{{0, 0}},   Vec2{{2, 0.5}}, Vec2{{4, 0}},
+                            Vec2{{0.5, 2}}, Vec2{{2.5, 2}}, Vec2{{0, 4}}};
+  const DrawnShape shape = drawn_triangle("a", 2, a);
+  EXPECT_TRUE(shape.filled);
+  EXPECT_EQ(shape.curves, (std::vector<std::vector<Vec2>>{
+                              {a[0], a[1], a[2]}, {a[2], a[4], a[5]}, {a[5], a[3], a[0]}}));
+  const std::vector<Vec2> b{Vec2{{1, 1}}, Vec2{{5, 1}}, Vec2{{1, 5}}};
+  const TriangleIntersections common = intersect(2, a, 1, b);
+  ASSERT_EQ(common.polygons.size(), 1U);
+  CurvePicture picture;
+  picture.shapes = {shape, drawn_triangle("b", 1, b)};
+  EXPECT_EQ(add_polygons(picture, common.polygons, 3),
+            3 + static_cast<int>(common.polygons[0].size()));
+  ASSERT_EQ(picture.regions.size(), 1U);
+  ASSERT_EQ(picture.marks.size(), common.polygons[0].size());
+  for (std::size_t i = 0; i < picture.marks.size(); ++i) {
+    EXPECT_EQ(picture.marks[i].kind, MarkKind::vertex);
+    EXPECT_EQ(picture.marks[i].label, std::to_string(3 + i));
+    EXPECT_EQ(picture.marks[i].point, picture.regions[0].curves[i][0]);
+  }
+  draw_curves(scratch("triangles.svg"), picture);
+  const std::string text = read_file(scratch("triangles.svg"));
+  EXPECT_NE(text.find(">vertex<"), std::string::npos);
+  EXPECT_EQ(count(text, "fill-opacity=\"0.1\""), 2U);  // the tints
+}
+
+TEST(DrawCurves, LongLegendsAreCut) {
+  CurvePicture picture;
+  for (int i = 0; i < 20; ++i) picture.shapes.push_back({std::to_string(i), {line}});
+  const std::string path = scratch("legend.svg");
+  draw_curves(path, picture);
+  const std::string text = read_file(path);
+  EXPECT_NE(text.find(">11<"), std::string::npos);
+  EXPECT_EQ(text.find(">12<"), std::string::npos);
+  EXPECT_NE(text.find(">and 8 more<"), std::string::npos);
 }
 
 }  // namespace
