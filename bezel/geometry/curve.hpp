@@ -31,32 +31,36 @@ class Curve {
   std::vector<Vec2> control_;
 };
 
-/// One curve passes through the other, or an end point of one lies on the other.
+/// A simple common point: one curve passes through the other; or an end point of one on the other.
 ///
-/// An end point within the coincidence distance of the other curve gives s or t exactly 0 or 1
-/// (both, when two end points are that close) and the other parameter from a computation that sees
-/// only that point and the other curve: all edges ending in one vertex get the same bits on a
-/// crossed edge.
+/// End points have s or t exactly 0 or 1. Without a coincidence distance they count only when they
+/// are on the other curve exactly. All parameters are then functions of the curves alone, to the
+/// last bit where exact numbers were needed: all edges ending in one vertex get the same bits on a
+/// crossed edge. With a distance, an end point within it counts, and its parameter on the other
+/// curve comes from a computation that sees only that point and that curve.
 struct Crossing {
   double s, t;            ///< parameters on the first and second curve, in [0, 1]
-  double s_lo, s_hi;      ///< with t_lo, t_hi: box of the search around it, which holds no
-  double t_lo, t_hi;      ///< other root when `certified`
-  double condition;       ///< largest |coordinate| / (slower speed * sine of the angle)
-  bool certified;         ///< proven simple and alone in its box
+  double s_lo, s_hi;      ///< with t_lo, t_hi: box around it, which holds no other root when
+  double t_lo, t_hi;      ///< `certified`
+  double condition;       ///< largest |coordinate| / (slower speed * sine of the angle); infinite
+                          ///< for an end point that only touches
+  bool certified;         ///< proven to exist, to be simple or an end point, and alone in its box
   Vec2 point_a, point_b;  ///< both curves there
   int sign;  ///< of cross(a', b'): +1 when b passes from right to left of a as t increases, -1 the
              ///< other way, 0 when tangential or unknown
 };
-/// The curves touch without being proven to cross.
+/// The curves touch inside both.
 struct Tangency {
   double s, t;
-  int order;  ///< contact order where provable, 0 when not
+  int order;  ///< order of contact, the multiplicity of the common point: 2 touching, 3 osculating
+              ///< and crossing (odd orders cross, even ones do not), ...; proven. With a
+              ///< coincidence distance 0: unknown
 };
-/// The curves coincide (within the coincidence tolerance) on matching intervals.
+/// The curves coincide on matching intervals: exactly, or within the coincidence distance.
 struct Overlap {
   double s0, s1;  ///< s0 < s1 on the first curve
   double t0, t1;  ///< C2(t0) = C1(s0), C2(t1) = C1(s1); t0 > t1 when the directions are opposite
-  double gap;     ///< largest distance seen between the two on the interval
+  double gap;     ///< largest distance seen between the two on the interval; 0 when exact
 };
 struct UnresolvedBox {
   double s_lo, s_hi, t_lo, t_hi;
@@ -72,40 +76,44 @@ struct CurveIntersections {
 
 struct IntersectOptions {
   /// Distance (length units of the input) below which the curves count as coincident and an end
-  /// point counts as lying on the other curve. 0: only exact coincidence (to rounding) is reported
-  /// as Overlap.
+  /// point counts as lying on the other curve; such answers are not `certified`, and `gap` says how
+  /// far overlaps are apart. 0: no tolerance at all.
   double coincidence_distance = 0.0;
 };
 
 /// Every intersection of two curves.
 ///
-/// With coincidence_distance = tol > 0 the answer is meant in a band of that width: end points
-/// within tol are on the other curve; where the curves stay within tol of each other over a length
-/// above 64 sqrt(tol * extent of the smaller) they overlap, and nothing else is reported there;
-/// shorter encounters are one Crossing (the sides change) or one Tangency (they do not). With tol
-/// = 0 end points count when within 2 u of the largest coordinate, overlaps when they agree to
-/// that everywhere between two such end points, and other encounters by the signs of a distance
-/// evaluated in doubled precision.
+/// With coincidence_distance 0 every verdict is a proof about the control points as given: no
+/// tolerance, at any scale, however nearly parallel the curves are. With tol > 0 the answer is
+/// meant in a band of that width: end points within tol are on the other curve; where the curves
+/// stay within tol of each other over a length above 64 sqrt(tol * extent of the smaller) they
+/// overlap, and nothing else is reported there; shorter encounters are one Crossing (the sides
+/// change) or one Tangency (they do not).
 ///
-/// @param a, b control points, 1 to 61 each, finite; a curve whose control points coincide to
-///          rounding counts as a point at parameter 0
+/// @param a, b control points, 1 to 61 each, finite; a curve that is a point (with tol > 0: to
+///          rounding) counts as its point at parameter 0
 /// @return   crossings, tangencies, overlaps in ascending s; overlaps are disjoint in s unless a
-///           curve folds back; what could not be decided within 20000 boxes and 128 zooms into
-///           nearly coincident parts, or where a curve is singular (a cusp on the other curve), is
-///           in `unresolved` with the reason
+///           curve folds back. What could not be decided is in `unresolved` with the reason: every
+///           common point is in one of the lists
 /// @throws   InputError for bad control points or a negative or infinite distance
-/// @accuracy crossings: parameters within 4 u condition up to a condition of 2^20; beyond that the
-///           residuals are compensated: within 4 u up to a condition of 1/u or so, where it
-///           converges (as a rule; else 4 u condition). Ends of an overlap inside the curves:
-///           where the distance passes tol, known to tol / 128 from a measured (not proven)
-///           interpolation error
-/// @cost     quadratic mesh edges 0.05 us when apart, 0.2 us when crossing or identical; random
-///           cubics 1 us; nearly coincident curves 5 to 40 us (one core); no allocation unless
-///           pieces are nearly parallel
-/// @limits   extents between 2^-480 and 2^480 (products must not overflow or vanish). Crossings
-///           between nearly parallel pieces come from an interpolated distance, not `certified`
-/// @source   docs/methods/geometry.md; the test for at most one root: [hermes2018] posed the
-///           problem, the bound is Krawczyk's with the hodographs' control points
+/// @accuracy tol = 0: parameters within 4 u condition (1.5 seen) up to a condition of 2^20; beyond,
+///           and for tangencies, overlaps and end points, the double nearest to the exact one.
+///           tol > 0: crossings within 4 u condition up to 2^20, then compensated; ends of an
+///           overlap inside the curves are where the distance passes tol, known to tol / 128 from
+///           a measured (not proven) interpolation error
+/// @cost     means on one core: random quadratics 0.2 us, cubics 0.3 us, quintics 0.9 us, no
+///           allocation; each nearly parallel or touching place, and each end point on the other
+///           curve that is no common end, 20 to 300 us more, in exact numbers. Quadratic mesh edges
+///           with tol > 0: 0.05 us when apart, 0.2 us when crossing or identical. Bounded: 2000
+///           boxes in doubles, 20000 / (degrees' product) polynomials in exact numbers; up to 2 s
+///           for coordinates whose exponents are 2000 apart
+/// @limits   tol = 0 leaves unresolved: contact of order two or more at parameters that are no
+///           fractions (both at once) of some 100 bits, in boxes below 2^-50; parts that coincide
+///           under a change of parameter that is not affine, unless on a straight line; a cusp of
+///           one on a cusp of the other, or on an end of an overlap when it is no fraction.
+///           tol > 0: extents between 2^-480 and 2^480; crossings between nearly parallel pieces
+///           come from an interpolated distance, not `certified`
+/// @source   docs/methods/geometry.md; [hermes2018, ch. 2] posed the problem
 CurveIntersections intersect(std::span<const Vec2> a, std::span<const Vec2> b,
                              const IntersectOptions& options = {});
 
