@@ -11,10 +11,19 @@
 #include <limits>
 #include <memory>
 
+#include "bezel/geometry/curve_kernel.hpp"
+
+// Targets between these differ little.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bezel/geometry/isolate.cpp"
+#include "hwy/foreach_target.h"
+#include "hwy/highway.h"
+//
 #include "bezel/geometry/isolate_kernel.hpp"
 
-namespace bezel::geometry_kernel {
-
+HWY_BEFORE_NAMESPACE();
+namespace bezel::geometry_kernel::HWY_NAMESPACE {
 namespace {
 
 constexpr double u = 0x1p-53;
@@ -46,8 +55,8 @@ struct Pieces {
     lo = hi = points.p[0];
     for (int i = 1; i <= n; ++i) {
       const PairVector q = points.p[i];
-      lo = {smaller(lo.x, q.x), smaller(lo.y, q.y)};
-      hi = {larger(hi.x, q.x), larger(hi.y, q.y)};
+      lo = smaller(lo, q);
+      hi = larger(hi, q);
     }
   }
 };
@@ -185,10 +194,9 @@ bool Isolator<D, Room>::consider(const Pieces<Room>& first, const Pieces<Room>& 
     // Newton's method for the chords instead of the curves, from the middle or a corner.
     Lanes start;
     if constexpr (D == 3) {
-      const auto middle = [](const Lanes* c) {
-        return both(0.125) * ((c[0] + c[3]) + both(3.0) * (c[1] + c[2]));
-      };
-      start = both(0.5) + swapped(middle(across) - middle(band)) * inverse;
+      const Lanes ends = (across[0] - band[0]) + (across[3] - band[3]);
+      const Lanes inner = (across[1] - band[1]) + (across[2] - band[2]);
+      start = both(0.5) + both(0.125) * swapped(ends + both(3.0) * inner) * inverse;
     } else {
       start = swapped(across[0] - band[0]) * inverse;
     }
@@ -237,8 +245,8 @@ typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle(const Box& box, La
     const PairVector other_slope = swapped(at.slope);
     const double local = 1.0 / cross(at.slope, other_slope)[0];
     const Lanes newton = cross(f, other_slope) * both(-local);
-    // Two terms more of the inverse function's series, by substitution into F' x = -F - F'' x^2 / 2 -
-    // F''' x^3 / 6. What the own and the other parameter contribute to each lane:
+    // Two terms more of the inverse function's series, by substitution into F' x = -F - F'' x^2 / 2
+    // - F''' x^3 / 6. What the own and the other parameter contribute to each lane:
     const PairVector solve = Lanes{local, -local} * other_slope;
     const Lanes own_bend = cross(at.bend, solve), other_bend = cross(swapped(at.bend), solve);
     const Lanes own_twist = cross(at.twist, solve), other_twist = cross(swapped(at.twist), solve);
@@ -356,7 +364,7 @@ bool Isolator<D, Room>::add(const Straddler& found, double s, double t, const Ba
 /// The pieces' directions are within about 30 degrees of a common line.
 template <int D, int Room>
 bool Isolator<D, Room>::nearly_parallel(const Box& box, PairVector chord) const {
-  const PairVector line{first_in_both(chord.x), first_in_both(chord.y)};
+  const PairVector line = first_in_both(chord);
   const Lanes along_chord = chord.x * line.x + chord.y * line.y;
   for (int i = 0; i < degrees_.max(); ++i) {
     const PairVector e = edge(degrees_, box.p, i);
@@ -415,18 +423,15 @@ template <int D, int Room>
 template <int K>
 unsigned Isolator<D, Room>::overlapping(const Pieces<Room>* pieces, Lanes error) const {
   // The boxes are widened by that; the sums are below 2 extent, their rounding below 2 u extent.
-  const Lanes margin = both(error[0] + error[1] + 4 * rounding_);
+  const Lanes width = both(error[0] + error[1] + 4 * rounding_);
+  const PairVector margin{width, width};
   unsigned bits = 0;
   for (int j = 0; j < K; j += 2) {
     const Pieces<Room>&p = pieces[j], &q = pieces[j + 1];
-    const Lanes lo_x = seconds(p.lo.x, q.lo.x) - margin, hi_x = seconds(p.hi.x, q.hi.x) + margin;
-    const Lanes lo_y = seconds(p.lo.y, q.lo.y) - margin, hi_y = seconds(p.hi.y, q.hi.y) + margin;
-    for (int i = 0; i < K; ++i) {
-      const Pieces<Room>& a = pieces[i];
-      bits |= lane_bits((first_in_both(a.lo.x) <= hi_x) & (first_in_both(a.hi.x) >= lo_x) &
-                        (first_in_both(a.lo.y) <= hi_y) & (first_in_both(a.hi.y) >= lo_y))
+    const PairVector lo = seconds(p.lo, q.lo) - margin, hi = seconds(p.hi, q.hi) + margin;
+    for (int i = 0; i < K; ++i)
+      bits |= overlap_bits(first_in_both(pieces[i].lo), first_in_both(pieces[i].hi), lo, hi)
               << (K * i + j);
-    }
   }
   return bits;
 }
@@ -478,13 +483,11 @@ void isolate_pair(std::span<const Vec2> a, std::span<const Vec2> b, Isolation& o
   }
   whole.measure(n);
   const PairVector lo = whole.lo, hi = whole.hi;
-  if (any((lo.x > swapped(hi.x)) | (lo.y > swapped(hi.y)))) return;
+  if (overlap_bits(lo, hi, swapped(lo), swapped(hi)) != 3) return;
   // Relative to a point where both may pass: coordinates are then rounded relative to the curves'
   // extents, not to their distance from the origin.
-  const auto middle = [](Lanes low, Lanes high) {
-    return both(0.5) * larger(low, swapped(low)) + both(0.5) * smaller(high, swapped(high));
-  };
-  const PairVector origin{middle(lo.x, hi.x), middle(lo.y, hi.y)};
+  const PairVector origin =
+      both(0.5) * larger(lo, swapped(lo)) + both(0.5) * smaller(hi, swapped(hi));
   for (int i = 0; i <= n; ++i) whole.points.p[i] = whole.points.p[i] - origin;
   whole.lo = lo - origin;
   whole.hi = hi - origin;
@@ -508,8 +511,7 @@ void isolate_pair(std::span<const Vec2> a, std::span<const Vec2> b, Isolation& o
 
 }  // namespace
 
-void isolate(std::span<const Vec2> a, std::span<const Vec2> b, Isolation& out) {
-  out.clear();
+void isolate_on_target(std::span<const Vec2> a, std::span<const Vec2> b, Isolation& out) {
   const int m = static_cast<int>(a.size()) - 1, n = static_cast<int>(b.size()) - 1;
   if (m == n && m == 1)
     isolate_pair<1, 2>(a, b, out);
@@ -523,4 +525,18 @@ void isolate(std::span<const Vec2> a, std::span<const Vec2> b, Isolation& out) {
     isolate_pair<0, max_curve_points>(a, b, out);
 }
 
+}  // namespace bezel::geometry_kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace bezel::geometry_kernel {
+
+HWY_EXPORT(isolate_on_target);
+
+void isolate(std::span<const Vec2> a, std::span<const Vec2> b, Isolation& out) {
+  out.clear();
+  HWY_DYNAMIC_DISPATCH(isolate_on_target)(a, b, out);
+}
+
 }  // namespace bezel::geometry_kernel
+#endif  // HWY_ONCE
