@@ -112,7 +112,7 @@ class Isolator {
   unsigned overlapping(const Pieces<Room>* pieces, Lanes error) const;
   bool consider(const Pieces<Room>& first, const Pieces<Room>& second, Box& box);
   Outcome settle(const Box& box, Lanes start, const Basis& basis);
-  Outcome settle_border(const Box& box, Lanes x, double r, const Basis& basis);
+  Outcome settle_border(const Box& box, Lanes x, Lanes best, double r, const Basis& basis);
   bool add(const Straddler& found, double s, double t, const Basis& basis, bool straddles,
            const Box& box);
   void leave_open(const Box& box) {
@@ -250,25 +250,27 @@ typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle(const Box& box, La
     const PairVector solve = Lanes{local, -local} * other_slope;
     const Lanes own_bend = cross(at.bend, solve), other_bend = cross(swapped(at.bend), solve);
     const Lanes own_twist = cross(at.twist, solve), other_twist = cross(swapped(at.twist), solve);
-    Lanes step = newton, correction = both(0.0);
+    Lanes step = newton, before = newton;
     for (int k = 0; k < 2; ++k) {
       const Lanes turned = swapped(step);
-      correction = (other_bend + turned * other_twist) * (turned * turned) -
-                   (own_bend + step * own_twist) * (step * step);
-      step = newton + correction;
+      before = step;
+      step = newton + ((other_bend + turned * other_twist) * (turned * turned) -
+                       (own_bend + step * own_twist) * (step * step));
     }
     // With C the inverse of the derivative here, ||I - C F'|| <= 1/2 on the ball of radius r.
     const double norm = larger(sum_norm(other_slope)) * std::fabs(local) * above;
-    const double size = larger(abs(newton)), bent = larger(abs(correction));
+    const double size = larger(abs(newton));
     const double r = (size + norm * value_error) * (2 * above) + 8 * u;
     const double turn = norm * (r * bend + slope_error);
     const Lanes low = x - both(r), high = x + both(r);
     const Lanes next = smaller(larger(x + step, lo), hi);
     if (turn < 0.49 && all((low > lo) & (high < hi))) {
-      // The next term of the series would be about 5 bent^3 / size^2, but for the fourth
-      // derivative.
-      if (size < 0x1p-50 ||
-          (bent * bent * bent <= 0x1p-60 * (size * size) && (D > 0 || size <= 0x1p-16))) {
+      // A further substitution would change the step by the last change times this rate, but for
+      // derivatives above the third.
+      const Lanes bends = abs(own_bend) + abs(other_bend);
+      const Lanes twists = abs(own_twist) + abs(other_twist);
+      const double rate = larger(both(2 * size) * bends + both(3 * size * size) * twists);
+      if (rate * larger(abs(step - before)) <= 0x1p-57 && (D > 0 || size <= 0x1p-18)) {
         const Lanes found = smaller(larger(x + step, low), high);
         const Straddler enclosure{low[0],  high[0], low[1],  high[1], low[0],
                                   high[0], low[1],  high[1], false,   0};
@@ -277,7 +279,7 @@ typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle(const Box& box, La
       }
     } else if (!(larger(abs(next - x)) > 0x1p-50)) {
       // Beyond [0, 1] by 1/64 at most |a''| is at most (1 + 1/32)^58 < 8 times larger.
-      return norm * (8 * r * bend + slope_error) < 0.49 ? settle_border(box, x, r, basis)
+      return norm * (8 * r * bend + slope_error) < 0.49 ? settle_border(box, x, next, r, basis)
                                                         : Outcome::split;
     }
     if (!all(next == next)) return Outcome::split;
@@ -286,30 +288,31 @@ typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle(const Box& box, La
   return Outcome::split;
 }
 
-/// Exactly one root is within r of x, which lies in the box; that reaches over its border. It is
-/// alone in the box made larger by 3/16 of its width on each side when ||I - C F'|| < 1 there, C
+/// Exactly one root is within r of x, and `best` is near it; that reaches over the box's border. It
+/// is alone in the box made larger by 3/16 of its width on each side when ||I - C F'|| < 1 there, C
 /// the inverse for the chords: its entries are linear in each hodograph, so that they grow by at
 /// most growth^(d-1).
 template <int D, int Room>
 typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle_border(const Box& box, Lanes x,
-                                                                     double r, const Basis& basis) {
+                                                                     Lanes best, double r,
+                                                                     const Basis& basis) {
   const Lanes along = larger(basis.along_hi - both(1.0), both(1.0) - basis.along_lo);
   double q = larger(along + swapped(basis.across)) * above;
   for (int i = 1; i < degrees_.max(); ++i) q *= growth;
   const double w_s = box.width[0], w_t = box.width[1];
   if (!(q < max_q && r <= w_s / 64 && r <= w_t / 64)) return Outcome::split;
   const double s = x[0], t = x[1];
-  const Straddler found{s - r,
-                        s + r,
-                        t - r,
-                        t + r,
-                        box.lo[0] - 0.1875 * w_s,
-                        box.lo[0] + 1.1875 * w_s,
-                        box.lo[1] - 0.1875 * w_t,
-                        box.lo[1] + 1.1875 * w_t,
-                        !(s - r > 0 && s + r < 1 && t - r > 0 && t + r < 1),
-                        0};
-  return add(found, s, t, basis, true, box) ? Outcome::done : Outcome::split;
+  const Straddler enclosure{s - r,
+                            s + r,
+                            t - r,
+                            t + r,
+                            box.lo[0] - 0.1875 * w_s,
+                            box.lo[0] + 1.1875 * w_s,
+                            box.lo[1] - 0.1875 * w_t,
+                            box.lo[1] + 1.1875 * w_t,
+                            !(s - r > 0 && s + r < 1 && t - r > 0 && t + r < 1),
+                            0};
+  return add(enclosure, best[0], best[1], basis, true, box) ? Outcome::done : Outcome::split;
 }
 
 /// False: it may be one found before, or another; nothing is added then.
