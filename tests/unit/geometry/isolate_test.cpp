@@ -185,13 +185,13 @@ TEST(Isolate, DegreeSixty) {
   EXPECT_EQ(x.roots[0].sign, -1);
 }
 
-// A curve that turns and turns, and itself: the bound of 2000 boxes ends the search, and what is
-// left is open.
+// A curve of the size of its own rounding, and itself: the bound of 2000 boxes ends the search, and
+// what is left is open.
 TEST(Isolate, BoundedWork) {
-  Points a;
-  for (int i = 0; i <= 20; ++i) a.push_back(Vec2{{i % 2 == 0 ? 0.0 : 1.0, i % 3 / 3.0}});
+  Points a(61, Vec2{{1, 1}});
+  a[0] = Vec2{{1, 1 + 0x1p-52}};
   const Isolation x = isolated(a, a);
-  EXPECT_GT(x.open.size(), 1000U);
+  EXPECT_GT(x.open.size(), 2000U);
   EXPECT_LE(x.open.size(), 4 * 2000U);
   for (int i = 0; i <= 64; ++i) EXPECT_TRUE(covered(x, i / 64.0, i / 64.0));
 }
