@@ -4,7 +4,6 @@
 #include "bezel/geometry/isolate.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -12,6 +11,7 @@
 #include <memory>
 
 #include "bezel/geometry/curve_kernel.hpp"
+#include "bezel/geometry/isolate_found.hpp"
 
 // Targets between these differ little.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL)
@@ -67,31 +67,8 @@ struct Basis {
   Lanes along_lo, along_hi, across;
   Lanes inverse;  // 1 / cross(chord, other chord)
   PairVector other_chord;
+  int sign() const { return inverse[0] > 0 ? 1 : -1; }
 };
-
-/// A root or an open box with a sign whose enclosure reaches over the border of the box it was
-/// found in, with the larger box in which it is alone.
-struct Straddler {
-  double s_lo, s_hi, t_lo, t_hi;
-  double alone_s0, alone_s1, alone_t0, alone_t1;
-  bool open;
-  std::size_t index;
-};
-
-struct Enclosure {
-  double s_lo, s_hi, t_lo, t_hi;
-};
-template <class P, class Q>
-bool inside(const P& p, const Q& q) {
-  return p.s_lo >= q.s_lo && p.s_hi <= q.s_hi && p.t_lo >= q.t_lo && p.t_hi <= q.t_hi;
-}
-template <class P, class Q>
-bool disjoint(const P& p, const Q& q) {
-  return p.s_hi < q.s_lo || q.s_hi < p.s_lo || p.t_hi < q.t_lo || q.t_hi < p.t_lo;
-}
-Enclosure alone_in(const Straddler& x) {
-  return {x.alone_s0, x.alone_s1, x.alone_t0, x.alone_t1};
-}
 
 template <int D, int Room>
 class Isolator {
@@ -99,7 +76,7 @@ class Isolator {
   using Box = BoxPair<Room>;
   Isolator(const PairDegrees<D>& degrees, const PairPoints<Room>& whole, double extent,
            Isolation& out)
-      : degrees_(degrees), whole_(whole), rounding_(u * extent), out_(out) {}
+      : degrees_(degrees), whole_(whole), rounding_(u * extent), found_(out) {}
 
   /// @param stack  room for stack_size boxes
   void run(const Pieces<Room>& whole, Box* stack);
@@ -113,11 +90,8 @@ class Isolator {
   bool consider(const Pieces<Room>& first, const Pieces<Room>& second, Box& box);
   Outcome settle(const Box& box, Lanes start, const Basis& basis);
   Outcome settle_border(const Box& box, Lanes x, Lanes best, double r, const Basis& basis);
-  bool add(const Straddler& found, double s, double t, const Basis& basis, bool straddles,
-           const Box& box);
-  void leave_open(const Box& box) {
-    out_.open.push_back({box.lo[0], box.lo[0] + box.width[0], box.lo[1], box.lo[1] + box.width[1],
-                         0, box.lo[0] + 0.5 * box.width[0], box.lo[1] + 0.5 * box.width[1]});
+  static ParameterBox parameters(const Box& box) {
+    return {box.lo[0], box.lo[0] + box.width[0], box.lo[1], box.lo[1] + box.width[1]};
   }
   bool nearly_parallel(const Box& box, PairVector chord) const;
   int split(Box* stack, int count);
@@ -125,10 +99,8 @@ class Isolator {
   const PairDegrees<D> degrees_;
   const PairPoints<Room>& whole_;
   const double rounding_;  // u times the largest |coordinate|
-  Isolation& out_;
+  FoundPoints found_;
   int work_ = 0;
-  int straddler_count_ = 0;
-  std::array<Straddler, 24> straddlers_;
 };
 
 /// The box of a's piece in `first` and b's in `second`, whose control boxes are not apart: whether
@@ -206,11 +178,11 @@ bool Isolator<D, Room>::consider(const Pieces<Room>& first, const Pieces<Room>& 
   for (int i = 0; i <= n; ++i) box.p.p[i] = joined(pa[i], pb[i]);
   // A few more halvings often part curves that pass at a small angle. Chords that are parallel to
   // four digits, or many open boxes, mean that they run along each other.
-  const std::size_t open = out_.open.size();
+  const std::size_t open = found_.open_count();
   const bool parallel = std::fabs(dets[0]) <= 0x1p-14 * chord_norm[0] * chord_norm[1];
   const int ready = open >= 16 ? 3 : parallel || open >= 4 ? 4 : open >= 2 ? 7 : 10;
   if (!alone && box.depth[0] >= ready && box.depth[1] >= ready && nearly_parallel(box, chord)) {
-    leave_open(box);
+    found_.leave_open(parameters(box));
     return false;
   }
   const PairVector sides = joined(first.hi, second.hi) - joined(first.lo, second.lo);
@@ -272,10 +244,9 @@ typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle(const Box& box, La
       const double rate = larger(both(2 * size) * bends + both(3 * size * size) * twists);
       if (rate * larger(abs(step - before)) <= 0x1p-57 && (D > 0 || size <= 0x1p-18)) {
         const Lanes found = smaller(larger(x + step, low), high);
-        const Straddler enclosure{low[0],  high[0], low[1],  high[1], low[0],
-                                  high[0], low[1],  high[1], false,   0};
-        return add(enclosure, found[0], found[1], basis, false, box) ? Outcome::done
-                                                                     : Outcome::split;
+        return found_.add({low[0], high[0], low[1], high[1]}, found[0], found[1], basis.sign())
+                   ? Outcome::done
+                   : Outcome::split;
       }
     } else if (!(larger(abs(next - x)) > 0x1p-50)) {
       // Beyond [0, 1] by 1/64 at most |a''| is at most (1 + 1/32)^58 < 8 times larger.
@@ -302,66 +273,13 @@ typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle_border(const Box& 
   const double w_s = box.width[0], w_t = box.width[1];
   if (!(q < max_q && r <= w_s / 64 && r <= w_t / 64)) return Outcome::split;
   const double s = x[0], t = x[1];
-  const Straddler enclosure{s - r,
-                            s + r,
-                            t - r,
-                            t + r,
-                            box.lo[0] - 0.1875 * w_s,
-                            box.lo[0] + 1.1875 * w_s,
-                            box.lo[1] - 0.1875 * w_t,
-                            box.lo[1] + 1.1875 * w_t,
-                            !(s - r > 0 && s + r < 1 && t - r > 0 && t + r < 1),
-                            0};
-  return add(enclosure, best[0], best[1], basis, true, box) ? Outcome::done : Outcome::split;
-}
-
-/// False: it may be one found before, or another; nothing is added then.
-template <int D, int Room>
-bool Isolator<D, Room>::add(const Straddler& found, double s, double t, const Basis& basis,
-                            bool straddles, const Box& box) {
-  const int sign = basis.inverse[0] > 0 ? 1 : -1;
-  if (straddles) {
-    if (straddler_count_ == static_cast<int>(straddlers_.size())) {
-      leave_open(box);
-      return true;
-    }
-    const Enclosure alone = alone_in(found);
-    for (const IsolatedRoot& root : out_.roots) {
-      if (inside(root, alone)) return true;
-      if (!disjoint(root, found)) return false;
-    }
-  }
-  for (int i = 0; i < straddler_count_; ++i) {
-    Straddler& before = straddlers_[static_cast<std::size_t>(i)];
-    if (inside(found, alone_in(before)) || (straddles && inside(before, alone_in(found)))) {
-      if (!before.open || found.open) return true;
-      // What was open is decided now. Others keep their places in the list of open boxes.
-      const OpenBox last = out_.open.back();
-      for (int j = 0; j < straddler_count_; ++j) {
-        Straddler& other = straddlers_[static_cast<std::size_t>(j)];
-        if (other.open && other.index + 1 == out_.open.size()) other.index = before.index;
-      }
-      out_.open[before.index] = last;
-      out_.open.pop_back();
-      before.open = false;
-      break;
-    }
-    if (!disjoint(found, before)) return false;
-  }
-  if (straddles) {
-    Straddler& kept = straddlers_[static_cast<std::size_t>(straddler_count_++)];
-    kept = found;
-    kept.index = out_.open.size();
-  }
-  if (found.open)
-    out_.open.push_back({std::max(0.0, std::min(box.lo[0], found.s_lo)),
-                         std::min(1.0, std::max(box.lo[0] + box.width[0], found.s_hi)),
-                         std::max(0.0, std::min(box.lo[1], found.t_lo)),
-                         std::min(1.0, std::max(box.lo[1] + box.width[1], found.t_hi)), sign, s,
-                         t});
-  else
-    out_.roots.push_back({s, t, found.s_lo, found.s_hi, found.t_lo, found.t_hi, sign});
-  return true;
+  const ParameterBox inner = parameters(box);
+  const ParameterBox alone{inner.s_lo - 0.1875 * w_s, inner.s_hi + 0.1875 * w_s,
+                           inner.t_lo - 0.1875 * w_t, inner.t_hi + 0.1875 * w_t};
+  return found_.add_straddler({s - r, s + r, t - r, t + r}, alone, inner, best[0], best[1],
+                              basis.sign())
+             ? Outcome::done
+             : Outcome::split;
 }
 
 /// The pieces' directions are within about 30 degrees of a common line.
@@ -388,7 +306,7 @@ int Isolator<D, Room>::split(Box* stack, int count) {
   const bool split_b = box.extent[1] >= 0.5 * box.extent[0];
   if (++work_ > max_work || (split_a && box.depth[0] == max_depth) ||
       (split_b && box.depth[1] == max_depth)) {
-    leave_open(box);
+    found_.leave_open(parameters(box));
     return count;
   }
   Pieces<Room> half[2];
