@@ -4,17 +4,26 @@
 #include "bezel/geometry/isolate.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <memory>
 
+#include "bezel/geometry/curve_kernel.hpp"
+#include "bezel/geometry/isolate_found.hpp"
+
+// Targets between these differ little.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bezel/geometry/isolate.cpp"
+#include "hwy/foreach_target.h"
+#include "hwy/highway.h"
+//
 #include "bezel/geometry/isolate_kernel.hpp"
 
-namespace bezel::geometry_kernel {
-
+HWY_BEFORE_NAMESPACE();
+namespace bezel::geometry_kernel::HWY_NAMESPACE {
 namespace {
 
 constexpr double u = 0x1p-53;
@@ -46,8 +55,8 @@ struct Pieces {
     lo = hi = points.p[0];
     for (int i = 1; i <= n; ++i) {
       const PairVector q = points.p[i];
-      lo = {smaller(lo.x, q.x), smaller(lo.y, q.y)};
-      hi = {larger(hi.x, q.x), larger(hi.y, q.y)};
+      lo = smaller(lo, q);
+      hi = larger(hi, q);
     }
   }
 };
@@ -58,31 +67,8 @@ struct Basis {
   Lanes along_lo, along_hi, across;
   Lanes inverse;  // 1 / cross(chord, other chord)
   PairVector other_chord;
+  int sign() const { return inverse[0] > 0 ? 1 : -1; }
 };
-
-/// A root or an open box with a sign whose enclosure reaches over the border of the box it was
-/// found in, with the larger box in which it is alone.
-struct Straddler {
-  double s_lo, s_hi, t_lo, t_hi;
-  double alone_s0, alone_s1, alone_t0, alone_t1;
-  bool open;
-  std::size_t index;
-};
-
-struct Enclosure {
-  double s_lo, s_hi, t_lo, t_hi;
-};
-template <class P, class Q>
-bool inside(const P& p, const Q& q) {
-  return p.s_lo >= q.s_lo && p.s_hi <= q.s_hi && p.t_lo >= q.t_lo && p.t_hi <= q.t_hi;
-}
-template <class P, class Q>
-bool disjoint(const P& p, const Q& q) {
-  return p.s_hi < q.s_lo || q.s_hi < p.s_lo || p.t_hi < q.t_lo || q.t_hi < p.t_lo;
-}
-Enclosure alone_in(const Straddler& x) {
-  return {x.alone_s0, x.alone_s1, x.alone_t0, x.alone_t1};
-}
 
 template <int D, int Room>
 class Isolator {
@@ -90,7 +76,7 @@ class Isolator {
   using Box = BoxPair<Room>;
   Isolator(const PairDegrees<D>& degrees, const PairPoints<Room>& whole, double extent,
            Isolation& out)
-      : degrees_(degrees), whole_(whole), rounding_(u * extent), out_(out) {}
+      : degrees_(degrees), whole_(whole), rounding_(u * extent), found_(out) {}
 
   /// @param stack  room for stack_size boxes
   void run(const Pieces<Room>& whole, Box* stack);
@@ -103,12 +89,9 @@ class Isolator {
   unsigned overlapping(const Pieces<Room>* pieces, Lanes error) const;
   bool consider(const Pieces<Room>& first, const Pieces<Room>& second, Box& box);
   Outcome settle(const Box& box, Lanes start, const Basis& basis);
-  Outcome settle_border(const Box& box, Lanes x, double r, const Basis& basis);
-  bool add(const Straddler& found, double s, double t, const Basis& basis, bool straddles,
-           const Box& box);
-  void leave_open(const Box& box) {
-    out_.open.push_back({box.lo[0], box.lo[0] + box.width[0], box.lo[1], box.lo[1] + box.width[1],
-                         0, box.lo[0] + 0.5 * box.width[0], box.lo[1] + 0.5 * box.width[1]});
+  Outcome settle_border(const Box& box, Lanes x, Lanes best, double r, const Basis& basis);
+  static ParameterBox parameters(const Box& box) {
+    return {box.lo[0], box.lo[0] + box.width[0], box.lo[1], box.lo[1] + box.width[1]};
   }
   bool nearly_parallel(const Box& box, PairVector chord) const;
   int split(Box* stack, int count);
@@ -116,10 +99,8 @@ class Isolator {
   const PairDegrees<D> degrees_;
   const PairPoints<Room>& whole_;
   const double rounding_;  // u times the largest |coordinate|
-  Isolation& out_;
+  FoundPoints found_;
   int work_ = 0;
-  int straddler_count_ = 0;
-  std::array<Straddler, 24> straddlers_;
 };
 
 /// The box of a's piece in `first` and b's in `second`, whose control boxes are not apart: whether
@@ -185,10 +166,9 @@ bool Isolator<D, Room>::consider(const Pieces<Room>& first, const Pieces<Room>& 
     // Newton's method for the chords instead of the curves, from the middle or a corner.
     Lanes start;
     if constexpr (D == 3) {
-      const auto middle = [](const Lanes* c) {
-        return both(0.125) * ((c[0] + c[3]) + both(3.0) * (c[1] + c[2]));
-      };
-      start = both(0.5) + swapped(middle(across) - middle(band)) * inverse;
+      const Lanes ends = (across[0] - band[0]) + (across[3] - band[3]);
+      const Lanes inner = (across[1] - band[1]) + (across[2] - band[2]);
+      start = both(0.5) + both(0.125) * swapped(ends + both(3.0) * inner) * inverse;
     } else {
       start = swapped(across[0] - band[0]) * inverse;
     }
@@ -198,11 +178,11 @@ bool Isolator<D, Room>::consider(const Pieces<Room>& first, const Pieces<Room>& 
   for (int i = 0; i <= n; ++i) box.p.p[i] = joined(pa[i], pb[i]);
   // A few more halvings often part curves that pass at a small angle. Chords that are parallel to
   // four digits, or many open boxes, mean that they run along each other.
-  const std::size_t open = out_.open.size();
+  const std::size_t open = found_.open_count();
   const bool parallel = std::fabs(dets[0]) <= 0x1p-14 * chord_norm[0] * chord_norm[1];
   const int ready = open >= 16 ? 3 : parallel || open >= 4 ? 4 : open >= 2 ? 7 : 10;
   if (!alone && box.depth[0] >= ready && box.depth[1] >= ready && nearly_parallel(box, chord)) {
-    leave_open(box);
+    found_.leave_open(parameters(box));
     return false;
   }
   const PairVector sides = joined(first.hi, second.hi) - joined(first.lo, second.lo);
@@ -237,39 +217,40 @@ typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle(const Box& box, La
     const PairVector other_slope = swapped(at.slope);
     const double local = 1.0 / cross(at.slope, other_slope)[0];
     const Lanes newton = cross(f, other_slope) * both(-local);
-    // Two terms more of the inverse function's series, by substitution into F' x = -F - F'' x^2 / 2 -
-    // F''' x^3 / 6. What the own and the other parameter contribute to each lane:
+    // Two terms more of the inverse function's series, by substitution into F' x = -F - F'' x^2 / 2
+    // - F''' x^3 / 6. What the own and the other parameter contribute to each lane:
     const PairVector solve = Lanes{local, -local} * other_slope;
     const Lanes own_bend = cross(at.bend, solve), other_bend = cross(swapped(at.bend), solve);
     const Lanes own_twist = cross(at.twist, solve), other_twist = cross(swapped(at.twist), solve);
-    Lanes step = newton, correction = both(0.0);
+    Lanes step = newton, before = newton;
     for (int k = 0; k < 2; ++k) {
       const Lanes turned = swapped(step);
-      correction = (other_bend + turned * other_twist) * (turned * turned) -
-                   (own_bend + step * own_twist) * (step * step);
-      step = newton + correction;
+      before = step;
+      step = newton + ((other_bend + turned * other_twist) * (turned * turned) -
+                       (own_bend + step * own_twist) * (step * step));
     }
     // With C the inverse of the derivative here, ||I - C F'|| <= 1/2 on the ball of radius r.
     const double norm = larger(sum_norm(other_slope)) * std::fabs(local) * above;
-    const double size = larger(abs(newton)), bent = larger(abs(correction));
+    const double size = larger(abs(newton));
     const double r = (size + norm * value_error) * (2 * above) + 8 * u;
     const double turn = norm * (r * bend + slope_error);
     const Lanes low = x - both(r), high = x + both(r);
     const Lanes next = smaller(larger(x + step, lo), hi);
     if (turn < 0.49 && all((low > lo) & (high < hi))) {
-      // The next term of the series would be about 5 bent^3 / size^2, but for the fourth
-      // derivative.
-      if (size < 0x1p-50 ||
-          (bent * bent * bent <= 0x1p-60 * (size * size) && (D > 0 || size <= 0x1p-16))) {
+      // A further substitution would change the step by the last change times this rate, but for
+      // derivatives above the third.
+      const Lanes bends = abs(own_bend) + abs(other_bend);
+      const Lanes twists = abs(own_twist) + abs(other_twist);
+      const double rate = larger(both(2 * size) * bends + both(3 * size * size) * twists);
+      if (rate * larger(abs(step - before)) <= 0x1p-57 && (D > 0 || size <= 0x1p-18)) {
         const Lanes found = smaller(larger(x + step, low), high);
-        const Straddler enclosure{low[0],  high[0], low[1],  high[1], low[0],
-                                  high[0], low[1],  high[1], false,   0};
-        return add(enclosure, found[0], found[1], basis, false, box) ? Outcome::done
-                                                                     : Outcome::split;
+        return found_.add({low[0], high[0], low[1], high[1]}, found[0], found[1], basis.sign())
+                   ? Outcome::done
+                   : Outcome::split;
       }
     } else if (!(larger(abs(next - x)) > 0x1p-50)) {
       // Beyond [0, 1] by 1/64 at most |a''| is at most (1 + 1/32)^58 < 8 times larger.
-      return norm * (8 * r * bend + slope_error) < 0.49 ? settle_border(box, x, r, basis)
+      return norm * (8 * r * bend + slope_error) < 0.49 ? settle_border(box, x, next, r, basis)
                                                         : Outcome::split;
     }
     if (!all(next == next)) return Outcome::split;
@@ -278,85 +259,33 @@ typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle(const Box& box, La
   return Outcome::split;
 }
 
-/// Exactly one root is within r of x, which lies in the box; that reaches over its border. It is
-/// alone in the box made larger by 3/16 of its width on each side when ||I - C F'|| < 1 there, C
+/// Exactly one root is within r of x, and `best` is near it; that reaches over the box's border. It
+/// is alone in the box made larger by 3/16 of its width on each side when ||I - C F'|| < 1 there, C
 /// the inverse for the chords: its entries are linear in each hodograph, so that they grow by at
 /// most growth^(d-1).
 template <int D, int Room>
 typename Isolator<D, Room>::Outcome Isolator<D, Room>::settle_border(const Box& box, Lanes x,
-                                                                     double r, const Basis& basis) {
+                                                                     Lanes best, double r,
+                                                                     const Basis& basis) {
   const Lanes along = larger(basis.along_hi - both(1.0), both(1.0) - basis.along_lo);
   double q = larger(along + swapped(basis.across)) * above;
   for (int i = 1; i < degrees_.max(); ++i) q *= growth;
   const double w_s = box.width[0], w_t = box.width[1];
   if (!(q < max_q && r <= w_s / 64 && r <= w_t / 64)) return Outcome::split;
   const double s = x[0], t = x[1];
-  const Straddler found{s - r,
-                        s + r,
-                        t - r,
-                        t + r,
-                        box.lo[0] - 0.1875 * w_s,
-                        box.lo[0] + 1.1875 * w_s,
-                        box.lo[1] - 0.1875 * w_t,
-                        box.lo[1] + 1.1875 * w_t,
-                        !(s - r > 0 && s + r < 1 && t - r > 0 && t + r < 1),
-                        0};
-  return add(found, s, t, basis, true, box) ? Outcome::done : Outcome::split;
-}
-
-/// False: it may be one found before, or another; nothing is added then.
-template <int D, int Room>
-bool Isolator<D, Room>::add(const Straddler& found, double s, double t, const Basis& basis,
-                            bool straddles, const Box& box) {
-  const int sign = basis.inverse[0] > 0 ? 1 : -1;
-  if (straddles) {
-    if (straddler_count_ == static_cast<int>(straddlers_.size())) {
-      leave_open(box);
-      return true;
-    }
-    const Enclosure alone = alone_in(found);
-    for (const IsolatedRoot& root : out_.roots) {
-      if (inside(root, alone)) return true;
-      if (!disjoint(root, found)) return false;
-    }
-  }
-  for (int i = 0; i < straddler_count_; ++i) {
-    Straddler& before = straddlers_[static_cast<std::size_t>(i)];
-    if (inside(found, alone_in(before)) || (straddles && inside(before, alone_in(found)))) {
-      if (!before.open || found.open) return true;
-      // What was open is decided now. Others keep their places in the list of open boxes.
-      const OpenBox last = out_.open.back();
-      for (int j = 0; j < straddler_count_; ++j) {
-        Straddler& other = straddlers_[static_cast<std::size_t>(j)];
-        if (other.open && other.index + 1 == out_.open.size()) other.index = before.index;
-      }
-      out_.open[before.index] = last;
-      out_.open.pop_back();
-      before.open = false;
-      break;
-    }
-    if (!disjoint(found, before)) return false;
-  }
-  if (straddles) {
-    Straddler& kept = straddlers_[static_cast<std::size_t>(straddler_count_++)];
-    kept = found;
-    kept.index = out_.open.size();
-  }
-  if (found.open)
-    out_.open.push_back({std::max(0.0, std::min(box.lo[0], found.s_lo)),
-                         std::min(1.0, std::max(box.lo[0] + box.width[0], found.s_hi)),
-                         std::max(0.0, std::min(box.lo[1], found.t_lo)),
-                         std::min(1.0, std::max(box.lo[1] + box.width[1], found.t_hi)), sign, s,
-                         t});
-  else
-    out_.roots.push_back({s, t, found.s_lo, found.s_hi, found.t_lo, found.t_hi, sign});
-  return true;
+  const ParameterBox inner = parameters(box);
+  const ParameterBox alone{inner.s_lo - 0.1875 * w_s, inner.s_hi + 0.1875 * w_s,
+                           inner.t_lo - 0.1875 * w_t, inner.t_hi + 0.1875 * w_t};
+  return found_.add_straddler({s - r, s + r, t - r, t + r}, alone, inner, best[0], best[1],
+                              basis.sign())
+             ? Outcome::done
+             : Outcome::split;
 }
 
 /// The pieces' directions are within about 30 degrees of a common line.
 template <int D, int Room>
 bool Isolator<D, Room>::nearly_parallel(const Box& box, PairVector chord) const {
-  const PairVector line{first_in_both(chord.x), first_in_both(chord.y)};
+  const PairVector line = first_in_both(chord);
   const Lanes along_chord = chord.x * line.x + chord.y * line.y;
   for (int i = 0; i < degrees_.max(); ++i) {
     const PairVector e = edge(degrees_, box.p, i);
@@ -377,7 +306,7 @@ int Isolator<D, Room>::split(Box* stack, int count) {
   const bool split_b = box.extent[1] >= 0.5 * box.extent[0];
   if (++work_ > max_work || (split_a && box.depth[0] == max_depth) ||
       (split_b && box.depth[1] == max_depth)) {
-    leave_open(box);
+    found_.leave_open(parameters(box));
     return count;
   }
   Pieces<Room> half[2];
@@ -415,18 +344,15 @@ template <int D, int Room>
 template <int K>
 unsigned Isolator<D, Room>::overlapping(const Pieces<Room>* pieces, Lanes error) const {
   // The boxes are widened by that; the sums are below 2 extent, their rounding below 2 u extent.
-  const Lanes margin = both(error[0] + error[1] + 4 * rounding_);
+  const Lanes width = both(error[0] + error[1] + 4 * rounding_);
+  const PairVector margin{width, width};
   unsigned bits = 0;
   for (int j = 0; j < K; j += 2) {
     const Pieces<Room>&p = pieces[j], &q = pieces[j + 1];
-    const Lanes lo_x = seconds(p.lo.x, q.lo.x) - margin, hi_x = seconds(p.hi.x, q.hi.x) + margin;
-    const Lanes lo_y = seconds(p.lo.y, q.lo.y) - margin, hi_y = seconds(p.hi.y, q.hi.y) + margin;
-    for (int i = 0; i < K; ++i) {
-      const Pieces<Room>& a = pieces[i];
-      bits |= lane_bits((first_in_both(a.lo.x) <= hi_x) & (first_in_both(a.hi.x) >= lo_x) &
-                        (first_in_both(a.lo.y) <= hi_y) & (first_in_both(a.hi.y) >= lo_y))
+    const PairVector lo = seconds(p.lo, q.lo) - margin, hi = seconds(p.hi, q.hi) + margin;
+    for (int i = 0; i < K; ++i)
+      bits |= overlap_bits(first_in_both(pieces[i].lo), first_in_both(pieces[i].hi), lo, hi)
               << (K * i + j);
-    }
   }
   return bits;
 }
@@ -478,13 +404,11 @@ void isolate_pair(std::span<const Vec2> a, std::span<const Vec2> b, Isolation& o
   }
   whole.measure(n);
   const PairVector lo = whole.lo, hi = whole.hi;
-  if (any((lo.x > swapped(hi.x)) | (lo.y > swapped(hi.y)))) return;
+  if (overlap_bits(lo, hi, swapped(lo), swapped(hi)) != 3) return;
   // Relative to a point where both may pass: coordinates are then rounded relative to the curves'
   // extents, not to their distance from the origin.
-  const auto middle = [](Lanes low, Lanes high) {
-    return both(0.5) * larger(low, swapped(low)) + both(0.5) * smaller(high, swapped(high));
-  };
-  const PairVector origin{middle(lo.x, hi.x), middle(lo.y, hi.y)};
+  const PairVector origin =
+      both(0.5) * larger(lo, swapped(lo)) + both(0.5) * smaller(hi, swapped(hi));
   for (int i = 0; i <= n; ++i) whole.points.p[i] = whole.points.p[i] - origin;
   whole.lo = lo - origin;
   whole.hi = hi - origin;
@@ -508,8 +432,7 @@ void isolate_pair(std::span<const Vec2> a, std::span<const Vec2> b, Isolation& o
 
 }  // namespace
 
-void isolate(std::span<const Vec2> a, std::span<const Vec2> b, Isolation& out) {
-  out.clear();
+void isolate_on_target(std::span<const Vec2> a, std::span<const Vec2> b, Isolation& out) {
   const int m = static_cast<int>(a.size()) - 1, n = static_cast<int>(b.size()) - 1;
   if (m == n && m == 1)
     isolate_pair<1, 2>(a, b, out);
@@ -523,4 +446,18 @@ void isolate(std::span<const Vec2> a, std::span<const Vec2> b, Isolation& out) {
     isolate_pair<0, max_curve_points>(a, b, out);
 }
 
+}  // namespace bezel::geometry_kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace bezel::geometry_kernel {
+
+HWY_EXPORT(isolate_on_target);
+
+void isolate(std::span<const Vec2> a, std::span<const Vec2> b, Isolation& out) {
+  out.clear();
+  HWY_DYNAMIC_DISPATCH(isolate_on_target)(a, b, out);
+}
+
 }  // namespace bezel::geometry_kernel
+#endif  // HWY_ONCE

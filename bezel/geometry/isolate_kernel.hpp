@@ -1,106 +1,17 @@
-#pragma once
-// Two plane curves side by side, one in each lane: what both need is computed at once.
-
-#include <cmath>
-#include <cstddef>
-
-#include "bezel/geometry/curve_kernel.hpp"
-
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
-
-namespace bezel::geometry_kernel {
-
-// Vectors of the compiler's (g++ and clang): two doubles in one register where there are such.
-using Lanes [[gnu::vector_size(16)]] = double;
-using LaneMask = decltype(Lanes{} < Lanes{});  // of integers: all bits or none
-
-inline Lanes both(double x) {
-  return Lanes{x, x};
-}
-/// The other curve's value in each lane.
-inline Lanes swapped(Lanes x) {
-  return __builtin_shufflevector(x, x, 1, 0);
-}
-inline Lanes first_in_both(Lanes x) {
-  return __builtin_shufflevector(x, x, 0, 0);
-}
-/// The second lanes of a and b.
-inline Lanes seconds(Lanes a, Lanes b) {
-  return __builtin_shufflevector(a, b, 1, 3);
-}
-/// a's first lane, b's second.
-inline Lanes joined(Lanes a, Lanes b) {
-  return __builtin_shufflevector(a, b, 0, 3);
-}
-/// The second one where one is NaN.
-inline Lanes smaller(Lanes x, Lanes y) {
-  return x < y ? x : y;
-}
-inline Lanes larger(Lanes x, Lanes y) {
-  return x > y ? x : y;
-}
-inline double larger(Lanes x) {
-  return larger(x, swapped(x))[0];
-}
-/// x where m is set, else y.
-inline Lanes where(LaneMask m, Lanes x, Lanes y) {
-  return m ? x : y;
-}
-inline Lanes abs(Lanes x) {
-  constexpr long long magnitude = 0x7fffffffffffffff;
-  return reinterpret_cast<Lanes>(reinterpret_cast<LaneMask>(x) & LaneMask{magnitude, magnitude});
-}
-/// Bit i: lane i is set.
-inline unsigned lane_bits(LaneMask m) {
-#ifdef __SSE2__
-  return static_cast<unsigned>(_mm_movemask_pd(reinterpret_cast<__m128d>(m)));
+// The parts of the isolation of common points that work on control points.
+//
+// For sources that Highway compiles once per target, as isolate_vector.hpp.
+#if defined(BEZEL_GEOMETRY_ISOLATE_KERNEL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef BEZEL_GEOMETRY_ISOLATE_KERNEL_HPP
+#undef BEZEL_GEOMETRY_ISOLATE_KERNEL_HPP
 #else
-  return (m[0] != 0 ? 1U : 0U) | (m[1] != 0 ? 2U : 0U);
+#define BEZEL_GEOMETRY_ISOLATE_KERNEL_HPP
 #endif
-}
-inline bool any(LaneMask m) {
-  return lane_bits(m) != 0;
-}
-inline bool all(LaneMask m) {
-  return lane_bits(m) == 3;
-}
 
-/// A point or vector of each curve.
-struct PairVector {
-  Lanes x, y;
-};
-inline PairVector operator-(PairVector p, PairVector q) {
-  return {p.x - q.x, p.y - q.y};
-}
-inline PairVector operator+(PairVector p, PairVector q) {
-  return {p.x + q.x, p.y + q.y};
-}
-inline PairVector operator*(Lanes s, PairVector p) {
-  return {s * p.x, s * p.y};
-}
-inline Lanes cross(PairVector p, PairVector q) {
-  return p.x * q.y - p.y * q.x;
-}
-inline PairVector swapped(PairVector p) {
-  return {swapped(p.x), swapped(p.y)};
-}
-inline PairVector where(LaneMask m, PairVector p, PairVector q) {
-  return {where(m, p.x, q.x), where(m, p.y, q.y)};
-}
-inline PairVector joined(PairVector a, PairVector b) {
-  return {joined(a.x, b.x), joined(a.y, b.y)};
-}
-/// |x| + |y|
-inline Lanes sum_norm(PairVector p) {
-  return abs(p.x) + abs(p.y);
-}
-/// a - b in both lanes.
-inline PairVector first_minus_second(PairVector p) {
-  const PairVector d = p - swapped(p);
-  return {first_in_both(d.x), first_in_both(d.y)};
-}
+#include "bezel/geometry/isolate_vector.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace bezel::geometry_kernel::HWY_NAMESPACE {
 
 /// Value, derivative, half the second derivative and a sixth of the third.
 struct PairTaylor {
@@ -210,4 +121,7 @@ PairTaylor expand(const PairDegrees<D>& degrees, const PairPoints<Room>& points,
   }
 }
 
-}  // namespace bezel::geometry_kernel
+}  // namespace bezel::geometry_kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target guard

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <vector>
 
+#include "bezel/base/random.hpp"
+#include "support/simd_targets.hpp"
+
 namespace {
 
 using bezel::Vec2;
@@ -180,6 +183,44 @@ TEST(Isolate, DegreeSixty) {
   ASSERT_EQ(x.roots.size(), 1U);
   EXPECT_TRUE(x.open.empty());
   EXPECT_EQ(x.roots[0].sign, -1);
+}
+
+// A curve of the size of its own rounding, and itself: the bound of 2000 boxes ends the search, and
+// what is left is open.
+TEST(Isolate, BoundedWork) {
+  Points a(61, Vec2{{1, 1}});
+  a[0] = Vec2{{1, 1 + 0x1p-52}};
+  const Isolation x = isolated(a, a);
+  EXPECT_GT(x.open.size(), 2000U);
+  EXPECT_LE(x.open.size(), 4 * 2000U);
+  for (int i = 0; i <= 64; ++i) EXPECT_TRUE(covered(x, i / 64.0, i / 64.0));
+}
+
+TEST(Isolate, SameBitsOnEveryTarget) {
+  bezel::RandomStream random("Isolate.SameBitsOnEveryTarget", 1);
+  std::vector<Points> curves;
+  for (int i = 0; i < 400; ++i) {
+    Points p;
+    for (int k = 0; k <= 1 + i / 40; ++k) {
+      const double px = random.uniform(), py = random.uniform();
+      p.push_back(Vec2{{px, py}});
+    }
+    curves.push_back(p);
+  }
+  const auto all = [&] {
+    std::vector<double> out;
+    for (std::size_t i = 0; i + 7 < curves.size(); ++i) {
+      const Isolation x = isolated(curves[i], curves[i + 7]);
+      for (const IsolatedRoot& r : x.roots)
+        out.insert(out.end(), {r.s, r.t, r.s_lo, r.s_hi, r.t_lo, r.t_hi, double(r.sign)});
+      for (const OpenBox& o : x.open)
+        out.insert(out.end(), {o.s0, o.s1, o.t0, o.t1, o.s, o.t, double(o.sign)});
+    }
+    return out;
+  };
+  const std::vector<double> expected = all();
+  EXPECT_GT(expected.size(), 1000U);
+  support::on_every_target([&] { EXPECT_EQ(all(), expected); });
 }
 
 }  // namespace
