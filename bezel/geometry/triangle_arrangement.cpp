@@ -363,11 +363,16 @@ bool Arrangement::order_pair(int k, std::size_t i) {
       (i + 2 == n || (apart(k, order[i], order[i + 2]) && apart(k, order[i + 1], order[i + 2])));
   if (p.sign * q.sign < 0 && alone) {
     const double lo = std::min(p.lo[at(k)], q.lo[at(k)]), hi = std::max(p.hi[at(k)], q.hi[at(k)]);
-    int place = n > 2 ? joint(last).sign * entering(k) : 0;
+    // The order of what comes before in the list is settled, so its sign counts; round the start of
+    // the list it need not be.
+    int place = i > 0 ? joint(last).sign * entering(k) : 0;
     if (place == 0) {
       const bool around = n == 2;
-      place = class_between(k, around ? p.place[at(k)] : joint(last).place[at(k)],
-                            around ? hi : joint(last).hi[at(k)], p.place[at(k)], lo);
+      double after = around ? hi : joint(last).hi[at(k)];
+      if (i == 0 && n > 3 && !apart(k, order[n - 2], last))
+        after = std::max(after, joint(order[n - 2]).hi[at(k)]);
+      place = class_between(k, around ? p.place[at(k)] : joint(last).place[at(k)], after,
+                            p.place[at(k)], lo);
     }
     if (place != 0) {
       // Inside: the first one leads out.
