@@ -377,7 +377,7 @@ bool Arrangement::order_pair(int k, std::size_t i) {
     if (place != 0) {
       // Inside: the first one leads out.
       if (p.sign * entering(k) * place > 0) std::swap(order[i], order[i + 1]);
-      const double s = 0.5 * (p.place[at(k)].s + q.place[at(k)].s);
+      const double s = std::min(0.5 * (p.place[at(k)].s + q.place[at(k)].s), 1.0 - 4.0 * u);
       joints_[static_cast<std::size_t>(order[i])].place[at(k)].s = s;
       joints_[static_cast<std::size_t>(order[i + 1])].place[at(k)].s = std::nextafter(s, 1.0);
       return true;
