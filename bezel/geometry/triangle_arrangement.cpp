@@ -418,12 +418,17 @@ bool Arrangement::order_pair(int k, std::size_t i) {
       place = class_between(k, around ? p.place[at(k)] : joint(last).place[at(k)], after,
                             p.place[at(k)], lo);
     }
-    if (place != 0) {
-      // Inside: the first one leads out.
-      if (p.sign * entering(k) * place > 0) std::swap(order[i], order[i + 1]);
-      const double s = std::min(0.5 * (p.place[at(k)].s + q.place[at(k)].s), 1.0 - 4.0 * u);
-      joints_[static_cast<std::size_t>(order[i])].place[at(k)].s = s;
-      joints_[static_cast<std::size_t>(order[i + 1])].place[at(k)].s = std::nextafter(s, 1.0);
+    // Inside: the first one leads out.
+    if (p.sign * entering(k) * place > 0) std::swap(order[i], order[i + 1]);
+    BoundaryJoint &first = joints_[static_cast<std::size_t>(order[i])],
+                  &second = joints_[static_cast<std::size_t>(order[i + 1])];
+    double &s = first.place[at(k)].s, &t = second.place[at(k)].s;
+    if (place != 0 && s < t + 0x1p-40) {
+      if (s >= t) {  // by rounding: the parameter that is known better stays
+        const bool keep = first.hi[at(k)] - first.lo[at(k)] < second.hi[at(k)] - second.lo[at(k)];
+        s = std::min(keep ? s : t, 1.0 - 4.0 * u);
+        t = std::nextafter(s, 1.0);
+      }
       return true;
     }
   }
