@@ -7,6 +7,8 @@
 
 #include "cli/arguments.hpp"
 #include "cli/output.hpp"
+#include "cli/overlaps.hpp"
+#include "cli/progress_bar.hpp"
 #include "cli/validity.hpp"
 
 namespace bezel::cli {
@@ -16,6 +18,7 @@ struct CheckOptions {
   std::string file;
   std::optional<Format> format;
   std::size_t limit = 10;
+  bool overlaps = false;
 };
 
 struct Defect {
@@ -69,12 +72,33 @@ std::vector<Defect> edge_defects(const TriangleMesh& mesh, const MeshValidity& v
   return defects;
 }
 
+std::vector<Defect> overlap_defects(const TriangleMesh& mesh, const MeshValidity& validity,
+                                    const Context& context) {
+  std::vector<Defect> defects;
+  ProgressBar bar(context, "check");
+  for (const ElementOverlap& o : find_overlaps(mesh, validity, context.threads, bar.callback())) {
+    const std::string where = fmt::format("({:.6g}, {:.6g})", o.place[0], o.place[1]);
+    defects.push_back(
+        {o.decided ? "overlap" : "undecided_overlap",
+         o.decided ? fmt::format(
+                         "triangles {}, {}: they overlap in an area of {:.6g}, with a corner at {}",
+                         o.first, o.second, o.area, where)
+                   : fmt::format("triangles {}, {}: whether they overlap is undecided: {}, near {}",
+                                 o.first, o.second, o.reason, where),
+         {o.first, o.second}});
+  }
+  return defects;
+}
+
 int run(const CheckOptions& options, const Context& context) {
   const Dataset data = read_noting(context, options.file, options.format);
   const TriangleMesh& mesh = *data.mesh;
   const MeshValidity validity = check_elements(mesh, context.threads);
   std::vector<Defect> defects = element_defects(mesh, validity);
   for (Defect& defect : edge_defects(mesh, validity)) defects.push_back(std::move(defect));
+  if (options.overlaps)
+    for (Defect& defect : overlap_defects(mesh, validity, context))
+      defects.push_back(std::move(defect));
 
   const std::size_t shown = std::min(options.limit, defects.size());
   if (context.json) {
@@ -91,11 +115,14 @@ int run(const CheckOptions& options, const Context& context) {
                     {"valid", validity.valid},
                     {"inverted", validity.inverted.size()},
                     {"undecided", validity.undecided.size()},
+                    {"overlaps_checked", options.overlaps},
                     {"defect_count", defects.size()},
                     {"defects", list}});
   } else if (defects.empty()) {
-    print(fmt::format("{}: ok, all {} triangles are valid and fit together\n", options.file,
-                      mesh.element_count()));
+    const std::size_t n = mesh.element_count();
+    print(n == 1 ? fmt::format("{}: ok, its only triangle is valid\n", options.file)
+                 : fmt::format("{}: ok, all {} triangles are valid and fit together\n",
+                               options.file, n));
   } else {
     std::string text =
         fmt::format("{}: {} in {}\n", options.file, counted(defects.size(), "defect"),
@@ -117,8 +144,11 @@ void add_check(CLI::App& app, Context& context) {
                                   "bezel check disc.msh", options, run);
   command->add_option("FILE", options->file, "Mesh file")->required();
   command->add_option("--limit", options->limit, "Show at most N defects")
+      ->check(CLI::Range(0, 1000000000))
       ->type_name("N")
       ->capture_default_str();
+  command->add_flag("--overlaps", options->overlaps,
+                    "Also look for elements that have an area in common");
   add_format_option(*command, options->format, "--format",
                     "Format of FILE, when its extension does not say");
 }

@@ -91,6 +91,7 @@ int run(int argc, char** argv) {
   add_view(app, context);
   add_eval(app, context);
   add_roots(app, context);
+  add_intersect(app, context);
   add_study(app, context);
 
   try {

@@ -2,30 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "bezel/base/atomic_file.hpp"
 #include "bezel/base/error.hpp"
 #include "bezel/bernstein/index.hpp"
+#include "cli/json_text.hpp"
 #include "cli/text_table.hpp"
 
 namespace bezel::cli {
-namespace {
-
-std::string read_standard_input() {
-  std::string bytes;
-  std::array<char, 65536> part;
-  while (const std::size_t n = std::fread(part.data(), 1, part.size(), stdin))
-    bytes.append(part.data(), n);
-  if (std::ferror(stdin) != 0)
-    throw InputError(InputPlace{"standard input", 0, {}, -1}, "cannot be read");
-  return bytes;
-}
-
-}  // namespace
 
 void add_polynomial_options(CLI::App& command, PolynomialOptions& options) {
   command.add_option("FILE", options.file, "JSON file; '-': the standard input");
@@ -56,9 +41,9 @@ Polynomials read_input(const PolynomialOptions& options, const std::string* para
     input.name = name;
   } else {
     if (parameters && !parameters->empty()) throw UsageError("--s needs --b");
-    if (options.file == "-") name = "standard input";
-    input = read_polynomials(name, options.file == "-" ? read_standard_input() : read_file(name),
-                             parameters != nullptr);
+    const InputText read = read_input_text(options.file);
+    name = read.name;
+    input = read_polynomials(name, read.text, parameters != nullptr);
   }
   if (input.rounded > 0)
     note(context, fmt::format("{}: {} rounded to the nearest double", name,

@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -15,6 +14,7 @@
 #include "bezel/io/cursor.hpp"
 #include "bezel/numeric/dyadic.hpp"
 #include "cli/context.hpp"
+#include "cli/json_text.hpp"
 
 namespace bezel::cli {
 namespace {
@@ -22,7 +22,6 @@ namespace {
 using files::shown;
 
 constexpr std::size_t most_digits = 300;
-constexpr const char* number_forms = "a number, \"p/q\" or a hex float such as \"0x1.8p-1\"";
 
 /// Digits as an integer; nothing when there are none, too many, or other characters.
 std::optional<Dyadic> parse_digits(std::string_view text) {
@@ -70,30 +69,6 @@ bool parse_rational(std::string_view text, std::size_t slash, double& value, boo
   if (negative) value = -value;
   return true;
 }
-
-/// Characters of a text; tells how many were read.
-struct Characters {
-  using iterator_category = std::forward_iterator_tag;
-  using value_type = char;
-  using difference_type = std::ptrdiff_t;
-  using pointer = const char*;
-  using reference = const char&;
-  const char* at = nullptr;
-  std::size_t* read = nullptr;
-
-  reference operator*() const { return *at; }
-  Characters& operator++() {
-    ++at;
-    ++*read;
-    return *this;
-  }
-  Characters operator++(int) {
-    Characters old = *this;
-    ++*this;
-    return old;
-  }
-  bool operator==(const Characters& other) const { return at == other.at; }
-};
 
 /// Receives the parts of the JSON text one after the other.
 class Reader {
@@ -171,18 +146,7 @@ class Reader {
     return true;
   }
   bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception& error) {
-    // "[json.exception...] parse error at line 1, column 2: what", or without the place
-    std::string what = error.what();
-    const std::size_t column = what.find("column "), bracket = what.find("] ");
-    const std::size_t colon = what.find(": ", std::min(column, what.size()));
-    if (colon != std::string::npos) {
-      what.erase(0, colon + 2);
-    } else if (bracket != std::string::npos) {
-      what.erase(0, bracket + 2);
-    }
-    for (char& c : what)
-      if (c < ' ' || c > '~') c = '?';
-    fail("", fmt::format("not JSON: {}", what));
+    fail_not_json(name_, json_, read_, error.what());
   }
 
  private:
@@ -224,9 +188,7 @@ class Reader {
     }
   }
   [[noreturn]] void fail(const std::string& where, const std::string& message) const {
-    // A number's end is known only from the character after it.
-    const std::size_t end = read_ > 0 && json_[read_ - 1] == '\n' ? read_ - 1 : read_;
-    throw InputError(InputPlace{name_, files::line_of(json_, end), where, -1}, message);
+    throw InputError(json_place(name_, json_, read_, where), message);
   }
 
   const std::string& name_;

@@ -8,6 +8,9 @@
 
 namespace bezel::cli {
 
+/// What a number may look like, for messages.
+inline constexpr const char* number_forms = "a number, \"p/q\" or a hex float such as \"0x1.8p-1\"";
+
 /// Reads one whole number: decimal "-0.75e2", hex float "0x1.8p-1" or rational "-1/3" (integers of
 /// at most 300 digits), each the nearest double, ties to even. False when the text is anything else
 /// or out of the range of a double. @param rounded  set when a rational is no double

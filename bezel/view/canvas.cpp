@@ -57,6 +57,16 @@ std::span<const Vec2> Path::control(const Piece& piece) const {
                                                 static_cast<std::size_t>(piece.degree) + 1);
 }
 
+Viewport fit(const Box2& plane, const Box2& pixels) {
+  const Vec2 size = plane.hi - plane.lo, room = pixels.hi - pixels.lo;
+  Viewport viewport;
+  viewport.scale = std::min(room.x() / size.x(), room.y() / size.y());
+  const Vec2 middle = plane.centre(), centre = pixels.centre();
+  viewport.origin =
+      Vec2{{centre.x() - viewport.scale * middle.x(), centre.y() + viewport.scale * middle.y()}};
+  return viewport;
+}
+
 void flatten(std::span<const Vec2> control, double tolerance, std::vector<Vec2>& out) {
   const std::size_t d = control.size() - 1;
   // A chord over 1/n of the parameter is within d (d-1) / 8 n^2 times the largest second

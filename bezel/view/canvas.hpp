@@ -20,7 +20,7 @@ class Path {
  public:
   void move(const Vec2& p);
   void line(const Vec2& p);
-  /// Appends a Bezier curve of degree 1..10 from the current point, which must equal control[0].
+  /// Appends a Bezier curve of degree 1..60 from the current point, which must equal control[0].
   void curve(std::span<const Vec2> control);
   void close();
   void rectangle(const Box2& box);
@@ -70,6 +70,9 @@ struct Viewport {
     return Vec2{{(q.x() - origin.x()) / scale, (origin.y() - q.y()) / scale}};
   }
 };
+
+/// A box of the plane fitted into the middle of a box of pixels.
+Viewport fit(const Box2& plane, const Box2& pixels);
 
 /// A scalar of a field as colours: t = (value - lo) / (hi - lo) through the map.
 struct FieldPaint {

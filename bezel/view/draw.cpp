@@ -7,6 +7,7 @@
 #include "bezel/base/atomic_file.hpp"
 #include "bezel/base/error.hpp"
 #include "bezel/view/canvas.hpp"
+#include "bezel/view/marker.hpp"
 #include "bezel/view/scalar.hpp"
 #include "bezel/view/ticks.hpp"
 
@@ -18,6 +19,8 @@ using view::Canvas;
 using view::Colour;
 using view::ColourMap;
 using view::FieldPaint;
+using view::fit;
+using view::ink;
 using view::Path;
 using view::Stroke;
 using view::TextStyle;
@@ -25,7 +28,6 @@ using view::Ticks;
 using view::Viewport;
 
 constexpr int smallest_size = 64, largest_size = 16384;  // pixels
-constexpr Colour ink{0.13, 0.13, 0.13, 1.0};
 // Lines of the first, second ... mesh without a colour of its own.
 constexpr std::array<const char*, 4> line_colours{"#333333", "#d62728", "#1f77b4", "#2ca02c"};
 
@@ -157,17 +159,6 @@ Layout lay_out(const std::vector<Panel>& panels, const DrawOptions& options, dou
   s.panel_height = std::max(
       8.0, (s.height - 2.0 * s.margin - s.rows * s.title_height - (s.rows - 1) * s.gap) / s.rows);
   return s;
-}
-
-/// The mesh fitted into the middle of a box of pixels.
-Viewport fit(const Box2& mesh, const Box2& pixels) {
-  const Vec2 size = mesh.hi - mesh.lo, room = pixels.hi - pixels.lo;
-  Viewport viewport;
-  viewport.scale = std::min(room.x() / size.x(), room.y() / size.y());
-  const Vec2 middle = mesh.centre(), centre = pixels.centre();
-  viewport.origin =
-      Vec2{{centre.x() - viewport.scale * middle.x(), centre.y() + viewport.scale * middle.y()}};
-  return viewport;
 }
 
 /// Finer lines on finer meshes: a twelfth of the mean edge, at most one pixel (per unit).

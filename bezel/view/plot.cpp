@@ -1,31 +1,31 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "bezel/base/atomic_file.hpp"
 #include "bezel/base/error.hpp"
 #include "bezel/view/canvas.hpp"
 #include "bezel/view/draw.hpp"
+#include "bezel/view/marker.hpp"
 #include "bezel/view/ticks.hpp"
 
 namespace bezel {
 namespace {
 
+using view::add_marker;
 using view::Anchor;
 using view::Canvas;
 using view::Colour;
+using view::ink;
+using view::major_grid;
+using view::minor_grid;
+using view::palette;
 using view::Path;
+using view::Shape;
 using view::Stroke;
 using view::TextStyle;
 using view::Ticks;
 
-constexpr Colour ink{0.13, 0.13, 0.13, 1.0};
-constexpr Colour major_grid{0.80, 0.80, 0.80, 1.0}, minor_grid{0.92, 0.92, 0.92, 1.0};
-// The palette of M. Okabe and K. Ito, distinguishable with every kind of colour vision, without its
-// yellow; black last.
-constexpr std::array<const char*, 7> palette{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                             "#e69f00", "#56b4e9", "#000000"};
 constexpr int most_markers =
     40;  // points beyond which a curve has no markers, a scatter small ones
 
@@ -88,35 +88,8 @@ Axis make_axis(bool logarithmic, double lo, double hi, int count) {
   return axis;
 }
 
-enum class Shape { circle, square, triangle, diamond, down };
 constexpr std::array<Shape, 5> shapes{Shape::circle, Shape::square, Shape::diamond, Shape::triangle,
                                       Shape::down};
-
-void add_marker(Path& path, Shape shape, const Vec2& p, double radius) {
-  if (shape == Shape::circle) {
-    path.circle(p, radius);
-    return;
-  }
-  // Regular polygons of about the circle's area.
-  const int sides = shape == Shape::square || shape == Shape::diamond ? 4 : 3;
-  const double turn = shape == Shape::square     ? 0.25
-                      : shape == Shape::diamond  ? 0.0
-                      : shape == Shape::triangle ? -0.25
-                                                 : 0.25;
-  const double r = radius * (sides == 4 ? 1.2 : 1.35);
-  for (int k = 0; k < sides; ++k) {
-    const double angle =
-        (shape == Shape::square ? std::numbers::pi / 4 : 2 * std::numbers::pi * turn) +
-        2 * std::numbers::pi * k / sides;
-    const Vec2 corner = p + r * Vec2{{std::cos(angle), std::sin(angle)}};
-    if (k == 0) {
-      path.move(corner);
-    } else {
-      path.line(corner);
-    }
-  }
-  path.close();
-}
 
 struct Look {
   Colour colour;

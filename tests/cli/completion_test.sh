@@ -29,4 +29,7 @@ expect "newton" study n
 expect "certified" eval p.json --precision c
 expect "full" roots p.json --newton f
 expect "--max-iterations" roots --max
+expect "intersect" int
+expect "--coincidence-distance" intersect curves.json --coi
+expect "--control-polygons" intersect curves.json --control
 exit $failed

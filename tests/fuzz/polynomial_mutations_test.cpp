@@ -11,6 +11,7 @@
 #include "bezel/numeric/dyadic.hpp"
 #include "cli/context.hpp"
 #include "cli/polynomials.hpp"
+#include "text_mutations.hpp"
 
 namespace bezel::cli {
 namespace {
@@ -143,27 +144,7 @@ TEST(PolynomialMutations, MutatedTextsAreReadOrRefused) {
   std::size_t refused = 0;
   constexpr std::size_t tries = 50000;
   for (std::size_t i = 0; i < tries; ++i) {
-    std::string json = seeds[i % seeds.size()];
-    for (std::uint64_t changes = 1 + random.below(4); changes > 0 && !json.empty(); --changes) {
-      const auto at = static_cast<std::size_t>(random.below(json.size()));
-      switch (random.below(5)) {
-        case 0:
-          json[at] = static_cast<char>(random.below(256));
-          break;
-        case 1:
-          json[at] = static_cast<char>('0' + random.below(10));
-          break;
-        case 2:
-          json.insert(at, words[random.below(words.size())]);
-          break;
-        case 3:
-          json.erase(at, 1 + random.below(5));
-          break;
-        default:
-          json.insert(static_cast<std::size_t>(random.below(json.size())),
-                      json.substr(at, 1 + random.below(20)));
-      }
-    }
+    const std::string json = test::mutated(seeds[i % seeds.size()], words, random);
     try {
       refused += read(json, i % 3 != 0) ? 0 : 1;
     } catch (const std::exception& error) {
