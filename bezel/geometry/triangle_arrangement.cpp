@@ -68,6 +68,42 @@ int same_curve(std::span<const Vec2> a, std::span<const Vec2> b) {
   return std::equal(a.begin(), a.end(), b.rbegin()) ? -1 : 0;
 }
 
+/// Two sides with one end in common that provably meet nowhere else: seen from there, the control
+/// points of each lie in a cone, and the cones are apart. With cross(a_i, b_j) > 0 for all i and j
+/// no sum of the a_i with weights >= 0 is one of the b_j.
+struct CommonEnd {
+  bool alone = false;
+  double s = 0.0, t = 0.0;
+};
+CommonEnd common_end(std::span<const Vec2> a, std::span<const Vec2> b) {
+  CommonEnd out;
+  int count = 0;
+  for (const bool last_a : {false, true})
+    for (const bool last_b : {false, true})
+      if ((last_a ? a.back() : a.front()) == (last_b ? b.back() : b.front())) {
+        ++count;
+        out.s = last_a ? 1.0 : 0.0;
+        out.t = last_b ? 1.0 : 0.0;
+      }
+  if (count != 1) return out;
+  const Vec2 end = out.s == 0.0 ? a.front() : a.back();
+  const std::span<const Vec2> rest_a = a.subspan(out.s == 0.0 ? 1 : 0, a.size() - 1),
+                              rest_b = b.subspan(out.t == 0.0 ? 1 : 0, b.size() - 1);
+  bool left = true, right = true;
+  for (const Vec2& p : rest_a)
+    for (const Vec2& q : rest_b) {
+      const Vec2 x = p - end, y = q - end;
+      const double positive = x.x() * y.y(), negative = x.y() * y.x();
+      // Differences, products and their difference: under 4 u of either product.
+      const double error = 0x1p-50 * (std::fabs(positive) + std::fabs(negative)) + 0x1p-900;
+      left = left && positive - negative > error;
+      right = right && negative - positive > error;
+      if (!left && !right) return out;
+    }
+  out.alone = true;
+  return out;
+}
+
 /// The sign of a crossing where boundary k enters the other triangle. cross(a', b') > 0: the second
 /// triangle's side passes from right to left of the first's, into the first; and the first's goes
 /// from left to right, out of the second.
@@ -142,6 +178,14 @@ bool Arrangement::build(const TriangleSides& a, const TriangleSides& b,
 bool Arrangement::meet(int i, int j, double coincidence_distance) {
   const CurveCache &a = sides(0).cache(i), &b = sides(1).cache(j);
   const int same = same_curve(a.control, b.control);
+  const CommonEnd end =
+      same == 0 && coincidence_distance == 0.0 ? common_end(a.control, b.control) : CommonEnd();
+  if (end.alone) {
+    BoundaryJoint joint{};
+    set_place(joint, 0, i, {end.s, end.s, end.s, 0.0, true});
+    set_place(joint, 1, j, {end.t, end.t, end.t, 0.0, true});
+    return add_contact(joint);
+  }
   if (same != 0) {
     found_ = CurveIntersections();
     found_.overlaps.push_back({0.0, 1.0, same > 0 ? 0.0 : 1.0, same > 0 ? 1.0 : 0.0, 0.0});
@@ -363,18 +407,28 @@ bool Arrangement::order_pair(int k, std::size_t i) {
       (i + 2 == n || (apart(k, order[i], order[i + 2]) && apart(k, order[i + 1], order[i + 2])));
   if (p.sign * q.sign < 0 && alone) {
     const double lo = std::min(p.lo[at(k)], q.lo[at(k)]), hi = std::max(p.hi[at(k)], q.hi[at(k)]);
-    int place = n > 2 ? joint(last).sign * entering(k) : 0;
+    // The order of what comes before in the list is settled, so its sign counts; round the start of
+    // the list it need not be.
+    int place = i > 0 ? joint(last).sign * entering(k) : 0;
     if (place == 0) {
       const bool around = n == 2;
-      place = class_between(k, around ? p.place[at(k)] : joint(last).place[at(k)],
-                            around ? hi : joint(last).hi[at(k)], p.place[at(k)], lo);
+      double after = around ? hi : joint(last).hi[at(k)];
+      if (i == 0 && n > 3 && !apart(k, order[n - 2], last))
+        after = std::max(after, joint(order[n - 2]).hi[at(k)]);
+      place = class_between(k, around ? p.place[at(k)] : joint(last).place[at(k)], after,
+                            p.place[at(k)], lo);
     }
-    if (place != 0) {
-      // Inside: the first one leads out.
-      if (p.sign * entering(k) * place > 0) std::swap(order[i], order[i + 1]);
-      const double s = 0.5 * (p.place[at(k)].s + q.place[at(k)].s);
-      joints_[static_cast<std::size_t>(order[i])].place[at(k)].s = s;
-      joints_[static_cast<std::size_t>(order[i + 1])].place[at(k)].s = std::nextafter(s, 1.0);
+    // Inside: the first one leads out.
+    if (p.sign * entering(k) * place > 0) std::swap(order[i], order[i + 1]);
+    BoundaryJoint &first = joints_[static_cast<std::size_t>(order[i])],
+                  &second = joints_[static_cast<std::size_t>(order[i + 1])];
+    double &s = first.place[at(k)].s, &t = second.place[at(k)].s;
+    if (place != 0 && s < t + 0x1p-40) {
+      if (s >= t) {  // by rounding: the parameter that is known better stays
+        const bool keep = first.hi[at(k)] - first.lo[at(k)] < second.hi[at(k)] - second.lo[at(k)];
+        s = std::min(keep ? s : t, 1.0 - 4.0 * u);
+        t = std::nextafter(s, 1.0);
+      }
       return true;
     }
   }

@@ -40,8 +40,7 @@ bool plainly_valid(int g, std::span<const Vec2> control) {
     for (std::size_t j = 0; j < n; ++j) {
       const double left = du[i].x() * dv[j].y(), right = du[i].y() * dv[j].x();
       // Differences, products and their difference: under 4 u of either product.
-      positive =
-          positive && left - right > 0x1p-50 * (std::fabs(left) + std::fabs(right)) + 0x1p-900;
+      positive &= left - right > 0x1p-50 * (std::fabs(left) + std::fabs(right)) + 0x1p-900;
     }
   return positive;
 }

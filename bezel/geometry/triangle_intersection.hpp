@@ -71,9 +71,9 @@ struct TriangleDifference {
 /// @accuracy relation, number of regions, and which sides bound them: those of the given control
 ///           points, as far as `intersect` for curves is exact; parameters have its accuracy, and
 ///           joints are rounded
-/// @cost     mostly the curves': 0.3 us when the sides do not meet, 2 us for quadratic triangles
-///           that overlap; exact arithmetic where corners lie on sides or sides touch: 20 us or so.
-///           No allocation when the boxes of the control points are apart
+/// @cost     mostly the curves': 0.4 us when the sides do not meet, 1.5 to 2 us for quadratic
+///           triangles that overlap, 2 to 6 us where they share sides or corners lie on sides. No
+///           allocation when the boxes of the control points are apart, up to degree 3
 /// @limits   extents as `intersect` for curves. A positive determinant does not exclude maps that
 ///           overlap themselves; for such triangles the result is meaningless. Triangles whose
 ///           validity check_validity cannot decide are unresolved. The touching point of two sides

@@ -100,7 +100,7 @@ TEST(TriangleIntersectionTest, NeighboursTouchAlongTheirSide) {
 TEST(TriangleIntersectionTest, TouchingInACornerOrApart) {
   EXPECT_EQ(intersect(1, unit, 1, moved(unit, 1, 0)).relation, TriangleRelation::touching);
   EXPECT_EQ(intersect(1, unit, 1, moved(unit, 0.5, 0.5)).relation, TriangleRelation::touching);
-  EXPECT_EQ(intersect(1, unit, 1, moved(unit, 0.5, 0.5 + 0x1p-40)).relation,
+  EXPECT_EQ(intersect(1, unit, 1, moved(unit, 0.5, 0.5 + 0x1p-53)).relation,
             TriangleRelation::disjoint);
   EXPECT_EQ(intersect(1, unit, 1, moved(unit, 3, 0)).relation, TriangleRelation::disjoint);
   EXPECT_EQ(intersect(1, unit, 1, moved(unit, 0.75, 0.75)).relation, TriangleRelation::disjoint);
