@@ -134,13 +134,22 @@ struct FootPoint {
   Vec2 point;
   double distance;
 };
-/// The nearest point of a curve to p, end points included; the smallest s when several are equally
-/// near.
+/// The nearest point of a curve to p, end points included; of feet whose distances are equal to
+/// (d + 2) u of the largest distance of a control point's coordinate from p's, the one with the
+/// smallest s.
 ///
+/// @param curve  control points, 1 to 61, finite
+/// @param p      finite
+/// @return   `distance` is infinite when it exceeds the largest double
 /// @throws   InputError for bad control points, or when p is not finite
-/// @accuracy distance within a few u of the curve's extent around p; s to the square root of that
-///           where the curve turns about p
-/// @cost     about 1 us at degree 2, by halving with box bounds and Newton
+/// @accuracy distance within 4 (d + 1) u of the control points' coordinates' largest distance from
+///           p (worst seen 0.2 of that); s within the same, times the largest speed, over half the
+///           second derivative of the squared distance, so to its square root where that vanishes
+/// @cost     0.3 us at degree 2, 0.5 us at degree 3, 2 us at degree 10 (half where the curve is
+///           nearly straight); at most 512 parts of the curve are looked at (0.1 ms at degree 3, 3
+///           ms at degree 60), used up only where the curve is nearly an arc about p: then the
+///           answer is the nearest point seen
+/// @source   docs/methods/geometry.md
 FootPoint foot_point(std::span<const Vec2> curve, const Vec2& p);
 
 }  // namespace bezel

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "bezel/geometry/intersect_search.hpp"
-#include "bezel/numeric/double_double.hpp"
 
 namespace bezel::geometry_kernel {
 namespace {
@@ -72,8 +71,7 @@ double evaluate(const Values& c, double x) {
 
 struct Piece {
   double s0, s1;
-  Values c;      // Bernstein coefficients of delta
-  double noise;  // measured error of the interpolant, and rounding
+  Values c;  // Bernstein coefficients of delta
 };
 
 /// delta is above +threshold, within it, or below -threshold on [s0, s1].
@@ -156,31 +154,13 @@ void classify(const Values& c, double threshold, double s0, double s1, int depth
   append(list, s0, s1, state);
 }
 
-using Exact = Vec<2, DoubleDouble>;
-
-Exact exact_point(int d, const Vec2* b, double s) {
-  std::array<Exact, max_curve_points> q;
-  for (int i = 0; i <= d; ++i)
-    q[static_cast<std::size_t>(i)] = Exact{{DoubleDouble(b[i].x()), DoubleDouble(b[i].y())}};
-  const DoubleDouble t(s), r = DoubleDouble(1.0) - t;
-  for (int k = d; k > 0; --k)
-    for (int i = 0; i < k; ++i) {
-      const auto j = static_cast<std::size_t>(i);
-      for (int x = 0; x < 2; ++x) q[j][x] = r * q[j][x] + t * q[j + 1][x];
-    }
-  return q[0];
-}
-
 }  // namespace
-
-// Of one call: rounding drawn large has places without a sign at every scale.
-constexpr int max_zooms = 128;
 
 /// The signed distance of b from a over [s0, s1] x [t0, t1], and what follows from it.
 class ParallelPair {
  public:
   ParallelPair(IntersectSearch& search, double s0, double s1, double t0, double t1)
-      : f_(search), s0_(s0), s1_(s1), t0_(t0), t1_(t1), exact_(search.tol_ == 0.0) {
+      : f_(search), s0_(s0), s1_(s1), t0_(t0), t1_(t1) {
     const Vec2 from = curve_point(f_.m_, f_.a_, s0).value, to = curve_point(f_.m_, f_.a_, s1).value;
     const Vec2 chord = to - from;
     d_ = (1.0 / norm(chord)) * chord;
@@ -191,10 +171,7 @@ class ParallelPair {
   void run() {
     if (!clip()) return;
     interpolate(s0_, s1_, 10);
-    if (exact_)
-      read_exact();
-    else
-      read_band();
+    read_band();
   }
 
  private:
@@ -280,28 +257,17 @@ class ParallelPair {
     const double along_a = dot(d_, p.derivative), along_b = dot(d_, q.derivative);
     const double slope_a = along_a != 0 ? cross(d_, p.derivative) / along_a : 0.0;
     const double slope_b = along_b != 0 ? cross(d_, q.derivative) / along_b : 0.0;
-    double delta = 0;
-    if (exact_) {
-      const Exact x = exact_point(f_.m_, f_.a_, s), y = exact_point(f_.n_, f_.b_, t);
-      const DoubleDouble wx = y[0] - x[0], wy = y[1] - x[1];
-      const DoubleDouble across = DoubleDouble(d_.x()) * wy - DoubleDouble(d_.y()) * wx;
-      const DoubleDouble along = DoubleDouble(d_.x()) * wx + DoubleDouble(d_.y()) * wy;
-      delta = (across - along * DoubleDouble(slope_b)).hi;
-    } else {
-      delta = cross(d_, q.value) - dot(d_, q.value) * slope_b;
-    }
+    const double delta = cross(d_, q.value) - dot(d_, q.value) * slope_b;
     return {delta / std::sqrt(1.0 + slope_a * slope_a), t, slope_a, slope_b};
   }
 
   void interpolate(double s0, double s1, int depth) {
     Values v{};
     const double h = s1 - s0;
-    double largest = 0;
     for (std::size_t i = 0; i < nodes; ++i) {
       v[i] = sample(s0 + h * points[i]).delta;
-      largest = std::max(largest, std::fabs(v[i]));
     }
-    Piece piece{s0, s1, {}, 0};
+    Piece piece{s0, s1, {}};
     for (std::size_t i = 0; i < nodes; ++i) {
       double sum = 0;
       for (std::size_t j = 0; j < nodes; ++j) sum += to_bernstein[i][j] * v[j];
@@ -312,15 +278,11 @@ class ParallelPair {
     double error = 0;
     for (const double x : {0.0123, 0.2718, 0.5772, 0.9877})
       error = std::max(error, std::fabs(evaluate(piece.c, x) - sample(s0 + h * x).delta));
-    // The nodes themselves are rounded: that moves delta by u times its slope.
-    const double node_noise = 0x1p-50 * largest / h;
-    const double allowed = exact_ ? 1e-12 * largest + 1e-28 * f_.magnitude_ + node_noise
-                                  : std::max(f_.tau_ / 128, 4 * f_.rounding_);
+    const double allowed = std::max(f_.tau_ / 128, 4 * f_.rounding_);
     // Where delta stays far from zero its exact shape does not matter.
     const auto [least, most] = std::minmax_element(piece.c.begin(), piece.c.end());
     const double away = std::max(*least, -*most);
     const bool clear = away > f_.tau_ + 16 * error && away > 0;
-    piece.noise = 4 * error + 1e-13 * largest + 1e-29 * f_.magnitude_ + (exact_ ? node_noise : 0.0);
     if (error <= allowed || clear || depth == 0 || !(h > 1e-12)) {
       if (!(error <= allowed) && !clear)
         f_.unresolved(s0, s1, std::min(opposite(s0), opposite(s1)),
@@ -366,19 +328,6 @@ class ParallelPair {
     return std::fabs(v0) < std::fabs(v1) ? s0 : s1;
   }
 
-  /// The same from the distance itself, when the interpolant's noise leaves a wide interval
-  /// (contact of order 3).
-  double exact_zero(double s0, double s1) const {
-    const double v0 = sample(s0).delta, v1 = sample(s1).delta;
-    if (!(v0 * v1 < 0)) return zero(s0, s1);
-    for (int i = 0; i < 60; ++i) {
-      const double s = 0.5 * (s0 + s1);
-      if (!(s > s0 && s < s1)) break;
-      ((sample(s).delta > 0) == (v1 > 0) ? s1 : s0) = s;
-    }
-    return 0.5 * (s0 + s1);
-  }
-
   Contact* contact_in(double s0, double s1, double t0, double t1, int& count) const {
     Contact* found = nullptr;
     count = 0;
@@ -408,7 +357,7 @@ class ParallelPair {
       return;
     }
     if (before * after < 0) {
-      const double s = exact_ && s1 - s0 > 1e-12 ? exact_zero(s0, s1) : zero(s0, s1);
+      const double s = zero(s0, s1);
       f_.add_crossing(s, foot(s), s0, s1, std::min(ta, tb), std::max(ta, tb), sign, false);
       return;
     }
@@ -514,65 +463,8 @@ class ParallelPair {
     f_.out_.overlaps.push_back(o);
   }
 
-  /// Coincidence distance 0: overlaps are those between contacts; here only signs count. Where the
-  /// sign is lost in the interpolants' noise, which is relative to the largest distance on a piece,
-  /// zoom in.
-  void read_exact() {
-    if (read_signs(0, 0, 6)) return;
-    // No zero, but closer than the coordinates can tell: touching to rounding.
-    std::vector<Segment> close;
-    for (const Piece& p : pieces_) classify(p.c, 0.25 * f_.rounding_, p.s0, p.s1, 48, close);
-    for (std::size_t i = 0; i < close.size(); ++i)
-      if (close[i].state == 0)
-        event(close[i].s0, close[i].s1, i > 0 ? close[i - 1].state : 0,
-              i + 1 < close.size() ? close[i + 1].state : 0);
-  }
-
-  /// Events of the current pieces; the states beyond the first and the last, 0 when unknown.
-  bool read_signs(int first_state, int last_state, int zooms) {
-    std::vector<Segment> list;
-    for (const Piece& p : pieces_) classify(p.c, p.noise, p.s0, p.s1, 48, list);
-    const std::vector<Piece> pieces = pieces_;
-    bool any = false;
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      const Segment& g = list[i];
-      const int before = i > 0 ? list[i - 1].state : first_state;
-      const int after = i + 1 < list.size() ? list[i + 1].state : last_state;
-      if (g.state != 0) {
-        if (before != 0 && before != g.state) {
-          event(g.s0, g.s0, before, g.state);
-          any = true;
-        }
-        continue;
-      }
-      const double width = g.s1 - g.s0;
-      const double lo = std::max(pieces.front().s0, g.s0 - width),
-                   hi = std::min(pieces.back().s1, g.s1 + width);
-      const bool zoom =
-          zooms > 0 && width > 1e-10 && hi - lo < 0.5 * (pieces.back().s1 - pieces.front().s0);
-      if (zoom && ++f_.zooms_ > max_zooms) {
-        const double ta = opposite(g.s0), tb = opposite(g.s1);
-        f_.unresolved(g.s0, g.s1, std::min(ta, tb), std::max(ta, tb),
-                      "the curves are too close to tell apart");
-        any = true;
-      } else if (zoom) {
-        pieces_.clear();
-        interpolate(lo, hi, 6);
-        any = read_signs(lo < g.s0 ? before : first_state, hi > g.s1 ? after : last_state,
-                         zooms - 1) ||
-              any;
-        pieces_ = pieces;
-      } else {
-        event(g.s0, g.s1, before, after);
-        any = true;
-      }
-    }
-    return any;
-  }
-
   IntersectSearch& f_;
   double s0_, s1_, t0_, t1_;
-  bool exact_;
   bool reversed_ = false, lo_is_b_ = false, hi_is_b_ = false;
   Vec2 d_;
   mutable double last_t_ = -1;

@@ -1,7 +1,8 @@
 #pragma once
-// The working state of one curve-curve intersection, shared by its two stages: subdivision with a
-// test for at most one transversal root (intersect.cpp), and the signed distance of nearly parallel
-// pieces (intersect_parallel.cpp).
+// Curve-curve intersection with a coincidence distance (without one: intersect_exact.hpp). The
+// working state shared by its stages: end points near the other curve (intersect_contacts.cpp),
+// subdivision with a test for at most one transversal root (intersect_search.cpp), and the signed
+// distance of nearly parallel pieces (intersect_parallel.cpp).
 
 #include <algorithm>
 #include <array>
@@ -102,7 +103,6 @@ class IntersectSearch {
   double shallow_;  // sine below which a crossing may count as an overlap: left to the second stage
   int parallel_depth_;
   int work_ = 0;
-  int zooms_ = 0;  // of all nearly parallel pieces together
   std::array<Contact, 16> contacts_;
   int contact_count_ = 0;
   std::vector<ParallelBox> parallel_;

@@ -3,8 +3,8 @@
 // it proves what subdivision can prove quickly and leaves the rest as boxes.
 
 #include <span>
-#include <vector>
 
+#include "bezel/geometry/inline_list.hpp"
 #include "bezel/numeric/vec.hpp"
 
 namespace bezel::geometry_kernel {
@@ -31,8 +31,8 @@ struct OpenBox {
 /// Every common point with parameters in [0, 1] is in the box of one root, and of one only, or in
 /// an open box.
 struct Isolation {
-  std::vector<IsolatedRoot> roots;
-  std::vector<OpenBox> open;
+  InlineList<IsolatedRoot, 12> roots;
+  InlineList<OpenBox, 4> open;
   void clear() {
     roots.clear();
     open.clear();
@@ -42,6 +42,12 @@ struct Isolation {
 /// @param a, b   control points, 1 to 61 each, checked by the caller: finite, the largest
 ///               coordinate of both between 2^-300 and 2^300
 /// @param out    cleared first; its storage is reused
+/// @accuracy roots: largest seen 1.5 u condition at degrees 1 to 6
+/// @cost     bounded: 2000 boxes, 24 halvings of a curve
+/// @limits   near-parallel pieces and cusps are left open; for degrees above 20 roots within 2^-40
+/// or
+///           so of a multiple of 2^-k may be
+/// @source   docs/methods/geometry.md, "Isolating common points"
 void isolate(std::span<const Vec2> a, std::span<const Vec2> b, Isolation& out);
 
 }  // namespace bezel::geometry_kernel

@@ -7,6 +7,7 @@
 #include "bezel/base/error.hpp"
 #include "bezel/geometry/triangle.hpp"
 #include "bezel/geometry/triangle_check.hpp"
+#include "bezel/geometry/triangle_hull.hpp"
 #include "bezel/geometry/triangle_kernel.hpp"
 
 namespace bezel {
@@ -20,29 +21,14 @@ constexpr int max_pieces = 4000;
 /// True when a line separates p from the control points by more than margin: x, y and the three
 /// sides' normals.
 bool separated(int g, const Vec2* b, const Vec2& p, double margin) {
-  const int n = bernstein::triangle_size(g);
-  double lo_x = b[0].x(), hi_x = lo_x, lo_y = b[0].y(), hi_y = lo_y;
-  for (int i = 1; i < n; ++i) {
-    lo_x = std::min(lo_x, b[i].x());
-    hi_x = std::max(hi_x, b[i].x());
-    lo_y = std::min(lo_y, b[i].y());
-    hi_y = std::max(hi_y, b[i].y());
-  }
-  if (p.x() < lo_x - margin || p.x() > hi_x + margin || p.y() < lo_y - margin ||
-      p.y() > hi_y + margin)
+  const Box2 box = geometry_kernel::control_box(bernstein::triangle_size(g) - 1, b);
+  if (p.x() < box.lo.x() - margin || p.x() > box.hi.x() + margin || p.y() < box.lo.y() - margin ||
+      p.y() > box.hi.y() + margin)
     return true;
   for (int side = 0; side < 3; ++side) {
-    const Vec2& from = b[bernstein::triangle_corner(g, side)];
-    const Vec2 chord = b[bernstein::triangle_corner(g, (side + 1) % 3)] - from;
-    const double at = cross(chord, p - from);
-    const double slack = margin * (std::fabs(chord.x()) + std::fabs(chord.y()));
-    double lo = 0, hi = 0;
-    for (int i = 0; i < n; ++i) {
-      const double c = cross(chord, b[i] - from);
-      lo = std::min(lo, c);
-      hi = std::max(hi, c);
-    }
-    if (at < lo - slack || at > hi + slack) return true;
+    const geometry_kernel::SideRange r = geometry_kernel::side_range(g, b, side);
+    const double at = cross(r.chord, p - r.from), slack = margin * r.length;
+    if (at < r.lo - slack || at > r.hi + slack) return true;
   }
   return false;
 }
@@ -61,17 +47,8 @@ LocateResult locate(int g, std::span<const Vec2> control, const Vec2& p, double 
   geometry_kernel::check_triangle(g, control, bernstein::max_triangle_degree);
   if (!std::isfinite(p.x()) || !std::isfinite(p.y()))
     throw InputError("the point to locate is not finite");
-  if (!(tolerance >= 0 && tolerance < 1))
-    throw InputError("the barycentric tolerance must be in [0, 1)");
-  // A barycentric may be negative by `tolerance`: the map moves by at most g * 2 tolerance times
-  // the control net's extent there. The rest covers rounding.
-  double extent = 0;
-  for (const Vec2& c : control)
-    extent =
-        std::max({extent, std::fabs(c.x() - control[0].x()), std::fabs(c.y() - control[0].y())});
-  const double far = std::max(std::fabs(p.x()), std::fabs(p.y()));
-  const double margin =
-      4.0 * g * tolerance * extent + 0x1p-50 * (extent + (far < 4 * extent ? far : 0.0));
+  geometry_kernel::check_tolerance(tolerance);
+  const double margin = geometry_kernel::HullMargin(g, control.data(), tolerance)(p);
   LocateResult best{Location::outside, {1.0 / 3, 1.0 / 3, 1.0 / 3}, 0};
   const auto finish = [&](Location status, const Lambda& lambda) {
     const auto f = geometry_kernel::map_gradient(g, control.data(), lambda[1], lambda[2], p);
@@ -80,13 +57,11 @@ LocateResult locate(int g, std::span<const Vec2> control, const Vec2& p, double 
   if (separated(g, control.data(), p, margin)) return finish(Location::outside, best.lambda);
 
   // Start where the triangle of the corners has p.
-  const Vec2 &c0 = control[0], du = control[static_cast<std::size_t>(g)] - c0,
-             dv = control.back() - c0;
-  const double det = cross(du, dv);
+  const geometry_kernel::CornerFrame corners(g, control.data());
   double u = 1.0 / 3, v = 1.0 / 3;
-  if (det != 0) {
-    u = std::clamp(cross(p - c0, dv) / det, 0.0, 1.0);
-    v = std::clamp(cross(du, p - c0) / det, 0.0, 1.0);
+  if (corners.det != 0) {
+    u = std::clamp(cross(p - corners.origin, corners.dv) / corners.det, 0.0, 1.0);
+    v = std::clamp(cross(corners.du, p - corners.origin) / corners.det, 0.0, 1.0);
     if (u + v > 1) {
       const double excess = 0.5 * (u + v - 1);
       u = std::max(0.0, u - excess);

@@ -28,6 +28,11 @@ void check_triangle(int g, std::span<const Vec2> control, int max_degree) {
       throw InputError("control point " + std::to_string(i) + " of the triangle is not finite");
 }
 
+void check_tolerance(double tolerance) {
+  if (!(tolerance >= 0 && tolerance < 1))
+    throw InputError("the barycentric tolerance must be in [0, 1)");
+}
+
 }  // namespace geometry_kernel
 
 using geometry_kernel::check_triangle;
@@ -104,7 +109,8 @@ InverseResult invert(int g, std::span<const Vec2> control, const Vec2& p, const 
   double size = 0;
   for (const Vec2& c : control)
     size = std::max({size, std::fabs(c.x() - p.x()), std::fabs(c.y() - p.y())});
-  return {{1.0 - u0 - v0, u0, v0}, norm(f.value) <= 4e-16 * g * size};
+  const double residual = norm(f.value);
+  return {{1.0 - u0 - v0, u0, v0}, residual <= 4e-16 * g * size && std::isfinite(residual)};
 }
 
 double area(int g, std::span<const Vec2> control) {

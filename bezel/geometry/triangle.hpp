@@ -69,6 +69,17 @@ struct LocateResult {
 [[nodiscard]] LocateResult locate(int g, std::span<const Vec2> control, const Vec2& p,
                                   double tolerance = 1e-12);
 
+/// Many points in one triangle: out[q] = locate(g, control, p[q], tolerance), bit for bit, on every
+/// SIMD target.
+///
+/// @param out    one place per point
+/// @throws   InputError also when `out` has another size than `p`
+/// @cost     per point inside: 8 ns at g = 1, 16 ns at g = 2, 22 ns at g = 3, 45 ns at g = 4 with
+///           AVX-512; 1.4 times that with AVX2, 2.4 times with SSE4
+/// @limits   above degree 10, and for points that are outside but in the hull, as one by one
+void locate(int g, std::span<const Vec2> control, std::span<const Vec2> p,
+            std::span<LocateResult> out, double tolerance = 1e-12);
+
 /// What `invert` found.
 struct InverseResult {
   Lambda lambda;   ///< sums to 1, not clamped
@@ -82,6 +93,19 @@ struct InverseResult {
 /// @cost     60 ns at g = 2, 70 ns at g = 3; at most 60 evaluations; no allocation
 [[nodiscard]] InverseResult invert(int g, std::span<const Vec2> control, const Vec2& p,
                                    const Lambda& start);
+
+/// Many points in one triangle: out[q] = invert(g, control, p[q], start[q]), bit for bit, on every
+/// SIMD target.
+///
+/// @param p, start, out  of one size; a point or start that is not finite gives `converged` false
+/// @throws   InputError for a bad degree, a bad control point, or spans of different sizes
+/// @accuracy |b(lambda) - p| within 8 (g + 1) u of the control points' largest distance from p,
+/// where
+///           the map is far from singular
+/// @cost     per point: 6 ns at g = 1, 13 ns at g = 2, 21 ns at g = 3, 44 ns at g = 4 with AVX-512
+/// @limits   above degree 10 as one by one
+void invert(int g, std::span<const Vec2> control, std::span<const Vec2> p,
+            std::span<const Lambda> start, std::span<InverseResult> out);
 
 /// Signed area (positive for counter-clockwise sides), exact up to rounding, by Green's theorem
 /// along the sides; relative to corner 0, so a triangle far from the origin loses nothing.

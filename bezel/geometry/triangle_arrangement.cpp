@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "bezel/bernstein/index.hpp"
 #include "bezel/geometry/curve_incidence.hpp"
@@ -28,25 +27,24 @@ bool before(const BoundaryPlace& p, const BoundaryPlace& q) {
 
 /// A parameter with the interval that holds the true one; ends of the side exactly.
 struct Parameter {
-  double s, lo, hi;
+  double s, lo, hi, error;
   bool end;
 };
 
-bool is_end(double s, double lo, double hi) {
-  return lo == hi && (s == 0.0 || s == 1.0);
+/// Common points at an end, and such that are rounded to it: `settle_corners` tells them apart.
+bool is_end(double s) {
+  return s == 0.0 || s == 1.0;
 }
 
 /// The computed parameter is within half the error of the true one, which is in the box, too.
 Parameter parameter_of(double s, double lo, double hi, double error) {
-  if (is_end(s, lo, hi)) return {s, s, s, true};
-  // A true parameter inside (0, 1) that is rounded to an end stays inside.
-  s = std::clamp(s, std::numeric_limits<double>::min(), 1.0 - u);
+  if (is_end(s)) return {s, s, s, error, true};
   double least = std::max(0.0, s - error), most = std::min(1.0, s + error);
   if (lo < hi) {
     least = std::max(least, lo);
     most = std::min(most, hi);
   }
-  return {s, std::min(least, s), std::max(most, s), false};
+  return {s, std::min(least, s), std::max(most, s), error, false};
 }
 
 void set_place(BoundaryJoint& joint, int k, int side, const Parameter& p) {
@@ -55,6 +53,8 @@ void set_place(BoundaryJoint& joint, int k, int side, const Parameter& p) {
     joint.place[i] = {p.s == 0.0 ? side : (side + 1) % 3, 0.0};
   else
     joint.place[i] = {side, p.s};
+  joint.seen[i] = !p.end ? 0 : p.s == 0.0 ? 1 : 2;
+  joint.error[i] = p.error;
   joint.lo[i] = p.end ? 0.0 : p.lo;
   joint.hi[i] = p.end ? 0.0 : p.hi;
 }
@@ -66,6 +66,13 @@ int same_curve(std::span<const Vec2> a, std::span<const Vec2> b) {
   if (a.size() != b.size()) return 0;
   if (std::equal(a.begin(), a.end(), b.begin())) return 1;
   return std::equal(a.begin(), a.end(), b.rbegin()) ? -1 : 0;
+}
+
+/// The sign of a crossing where boundary k enters the other triangle. cross(a', b') > 0: the second
+/// triangle's side passes from right to left of the first's, into the first; and the first's goes
+/// from left to right, out of the second.
+int entering(int k) {
+  return k == 0 ? -1 : 1;
 }
 
 Box2 part_box(const CurveCache& side, double s0, double s1) {
@@ -105,9 +112,15 @@ bool Arrangement::build(const TriangleSides& a, const TriangleSides& b,
   parts_[1].clear();
   corner_inside_ = {};
   reason_.clear();
-  for (int i = 0; i < 3; ++i)
+  const Vec2 reach{{coincidence_distance, coincidence_distance}};
+  for (int i = 0; i < 3; ++i) {
+    Box2 box = a.cache(i).box;
+    box.lo -= reach;
+    box.hi += reach;
+    if (!box.overlaps(b.box())) continue;
     for (int j = 0; j < 3; ++j)
-      if (!meet(i, j, coincidence_distance)) return false;
+      if (box.overlaps(b.cache(j).box) && !meet(i, j, coincidence_distance)) return false;
+  }
   if (joints_.empty()) {
     // One contains the other, or they are apart; corners decide.
     for (int k = 0; k < 2; ++k) {
@@ -122,6 +135,7 @@ bool Arrangement::build(const TriangleSides& a, const TriangleSides& b,
     }
     return true;
   }
+  settle_corners();
   return sort_joints() && classify(0) && classify(1);
 }
 
@@ -138,9 +152,18 @@ bool Arrangement::meet(int i, int j, double coincidence_distance) {
     const UnresolvedBox& box = found_.unresolved.front();
     return fail(box.reason.c_str(), part_box(a, box.s_lo, box.s_hi));
   }
+  // A polygon is no better than its joints: both sides must agree there to rounding.
+  const double apart = 2.0 * coincidence_distance + 0x1p-40 * std::max(a.magnitude, b.magnitude);
   for (const Crossing& c : found_.crossings) {
+    const Vec2 gap = c.point_a - c.point_b;
+    if (!(std::max(std::fabs(gap.x()), std::fabs(gap.y())) <= apart)) {
+      Box2 where;
+      where.include(c.point_a);
+      where.include(c.point_b);
+      return fail("a common point of two sides is not known well enough", where);
+    }
     // Where a corner lies on a side only that side's speed counts, else the angle as well.
-    const bool corner = is_end(c.s, c.s_lo, c.s_hi) || is_end(c.t, c.t_lo, c.t_hi);
+    const bool corner = is_end(c.s) || is_end(c.t);
     const auto error = [&](const CurveCache& side, double at) {
       double amplification = c.condition;
       if (corner) {
@@ -155,7 +178,8 @@ bool Arrangement::meet(int i, int j, double coincidence_distance) {
     BoundaryJoint joint{};
     set_place(joint, 0, i, s);
     set_place(joint, 1, j, t);
-    joint.sign = c.certified && !s.end && !t.end ? c.sign : 0;
+    joint.seen_sign = c.certified ? c.sign : 0;
+    joint.sign = s.end || t.end ? 0 : joint.seen_sign;
     // The same bits when the triangles change places.
     joint.point = 0.5 * (c.point_a + c.point_b);
     if (!add_contact(joint)) return false;
@@ -163,9 +187,8 @@ bool Arrangement::meet(int i, int j, double coincidence_distance) {
   const auto add_place = [&](double s, double t, double slack) {
     BoundaryJoint joint{};
     const auto parameter = [&](double x) {
-      const bool end = x == 0.0 || x == 1.0;
-      return Parameter{x, end ? x : std::max(0.0, x - slack), end ? x : std::min(1.0, x + slack),
-                       end};
+      if (is_end(x)) return Parameter{x, x, x, slack, true};
+      return Parameter{x, std::max(0.0, x - slack), std::min(1.0, x + slack), slack, false};
     };
     set_place(joint, 0, i, parameter(s));
     set_place(joint, 1, j, parameter(t));
@@ -219,13 +242,18 @@ bool Arrangement::add_contact(const BoundaryJoint& contact) {
 
 bool Arrangement::join(BoundaryJoint& joint, const BoundaryJoint& contact) {
   for (std::size_t k = 0; k < 2; ++k) {
-    if (joint.place[k] == contact.place[k]) continue;
+    if (joint.place[k] == contact.place[k]) {
+      joint.seen[k] |= contact.seen[k];
+      continue;
+    }
     const bool old_corner = is_corner(joint.place[k]), new_corner = is_corner(contact.place[k]);
     if (old_corner && !new_corner) continue;
     if (!old_corner && new_corner) {
       joint.place[k] = contact.place[k];
       joint.lo[k] = contact.lo[k];
       joint.hi[k] = contact.hi[k];
+      joint.seen[k] = contact.seen[k];
+      joint.error[k] = contact.error[k];
       if (k == 0 || !is_corner(joint.place[0]))
         joint.point = sides(static_cast<int>(k)).corner(joint.place[k].edge);
       continue;
@@ -241,30 +269,119 @@ bool Arrangement::join(BoundaryJoint& joint, const BoundaryJoint& contact) {
   return true;
 }
 
-bool Arrangement::sort_joints() {
-  for (std::size_t k = 0; k < 2; ++k) {
-    std::vector<std::int32_t>& order = order_[k];
-    order.resize(joints_.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::int32_t>(i);
-    const auto joint = [&](std::int32_t i) -> BoundaryJoint& {
-      return joints_[static_cast<std::size_t>(i)];
-    };
-    std::sort(order.begin(), order.end(), [&](std::int32_t i, std::int32_t j) {
-      return before(joint(i).place[k], joint(j).place[k]);
-    });
-    for (std::size_t i = 0; i < order.size(); ++i)
-      joint(order[i]).position[k] = static_cast<std::int32_t>(i);
-    for (std::size_t i = 1; i < order.size(); ++i) {
-      const BoundaryJoint &p = joint(order[i - 1]), &q = joint(order[i]);
-      if (p.place[k].edge != q.place[k].edge || is_corner(p.place[k]) || p.hi[k] < q.lo[k])
-        continue;
-      Box2 where;
-      where.include(p.point);
-      where.include(q.point);
-      return fail("the order of common points along a side is lost in rounding", where);
+/// A corner on the other boundary is met by both sides that end there. What only one of them meets
+/// is a common point inside that side, so near to its end that its parameter is rounded to it.
+void Arrangement::settle_corners() {
+  for (BoundaryJoint& joint : joints_) {
+    bool moved = false;
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (joint.seen[k] != 1 && joint.seen[k] != 2) continue;
+      moved = true;
+      const bool start = joint.seen[k] == 1;
+      BoundaryPlace& place = joint.place[k];
+      place = start ? BoundaryPlace{place.edge, 0x1p-1022}
+                    : BoundaryPlace{(place.edge + 2) % 3, 1.0 - u};
+      joint.seen[k] = 0;
+      joint.lo[k] = start ? 0.0 : std::min(place.s, 1.0 - joint.error[k]);
+      joint.hi[k] = start ? std::max(place.s, std::min(1.0, joint.error[k])) : 1.0;
     }
+    if (moved && !is_corner(joint.place[0]) && !is_corner(joint.place[1]))
+      joint.sign = joint.seen_sign;
+  }
+}
+
+/// Narrows the interval of each parameter to where that side meets the box of what the interval of
+/// the other leaves of the other side.
+void Arrangement::tighten(std::int32_t i) {
+  BoundaryJoint& joint = joints_[static_cast<std::size_t>(i)];
+  for (const int k : {0, 1}) {
+    if (is_corner(joint.place[at(k)])) continue;
+    const BoundaryPlace& other = joint.place[at(1 - k)];
+    Box2 box;
+    if (is_corner(other))
+      box.include(sides(1 - k).corner(other.edge));
+    else
+      box = part_box(sides(1 - k).cache(other.edge), joint.lo[at(1 - k)], joint.hi[at(1 - k)]);
+    const CurveCache& side = sides(k).cache(joint.place[at(k)].edge);
+    const double magnitude = std::max(side.magnitude, sides(1 - k).cache(other.edge).magnitude);
+    // de Casteljau's algorithm, twice for either, and some more.
+    const double slack = 16.0 * 41.0 * u * magnitude;
+    box.lo -= Vec2{{slack, slack}};
+    box.hi += Vec2{{slack, slack}};
+    double lo = joint.lo[at(k)], hi = joint.hi[at(k)];
+    // The largest dyadic steps from either end that certainly miss the box.
+    for (double step = 0.5 * (hi - lo); step > 0x1p-40; step *= 0.5) {
+      if (lo + step < joint.place[at(k)].s && !part_box(side, lo, lo + step).overlaps(box))
+        lo += step;
+      if (hi - step > joint.place[at(k)].s && !part_box(side, hi - step, hi).overlaps(box))
+        hi -= step;
+    }
+    joint.lo[at(k)] = lo;
+    joint.hi[at(k)] = hi;
+  }
+}
+
+bool Arrangement::sort_joints() {
+  for (int k = 0; k < 2; ++k) {
+    std::vector<std::int32_t>& order = order_[at(k)];
+    order.clear();
+    for (std::size_t i = 0; i < joints_.size(); ++i) {  // few: insertion is quickest
+      const auto name = static_cast<std::int32_t>(i);
+      order.push_back(name);
+      for (std::size_t j = i; j > 0; --j) {
+        if (!before(joint(name).place[at(k)], joint(order[j - 1]).place[at(k)])) break;
+        std::swap(order[j], order[j - 1]);
+      }
+    }
+    for (std::size_t i = 1; i < order.size(); ++i)
+      if (!apart(k, order[i - 1], order[i])) {
+        tighten(order[i - 1]);
+        tighten(order[i]);
+        if (!apart(k, order[i - 1], order[i]) && !order_pair(k, i - 1)) return false;
+      }
   }
   return true;
+}
+
+/// Whether joint i comes before joint j on the same side for certain, or they are on two sides.
+bool Arrangement::apart(int k, std::int32_t i, std::int32_t j) const {
+  const BoundaryJoint &p = joint(i), &q = joint(j);
+  return p.place[at(k)].edge != q.place[at(k)].edge || is_corner(p.place[at(k)]) ||
+         p.hi[at(k)] < q.lo[at(k)];
+}
+
+/// Joints i and i + 1 along boundary k are too near to each other: two crossings, into the other
+/// triangle and out of it, have the order that fits what comes before them.
+bool Arrangement::order_pair(int k, std::size_t i) {
+  std::vector<std::int32_t>& order = order_[at(k)];
+  const std::size_t n = order.size();
+  BoundaryJoint &p = joints_[static_cast<std::size_t>(order[i])],
+                &q = joints_[static_cast<std::size_t>(order[i + 1])];
+  const std::int32_t last = order[(i + n - 1) % n];
+  const bool alone =
+      (i == 0 || apart(k, last, order[i])) && (i == 0 || apart(k, last, order[i + 1])) &&
+      (i + 2 == n || (apart(k, order[i], order[i + 2]) && apart(k, order[i + 1], order[i + 2])));
+  if (p.sign * q.sign < 0 && alone) {
+    const double lo = std::min(p.lo[at(k)], q.lo[at(k)]), hi = std::max(p.hi[at(k)], q.hi[at(k)]);
+    int place = n > 2 ? joint(last).sign * entering(k) : 0;
+    if (place == 0) {
+      const bool around = n == 2;
+      place = class_between(k, around ? p.place[at(k)] : joint(last).place[at(k)],
+                            around ? hi : joint(last).hi[at(k)], p.place[at(k)], lo);
+    }
+    if (place != 0) {
+      // Inside: the first one leads out.
+      if (p.sign * entering(k) * place > 0) std::swap(order[i], order[i + 1]);
+      const double s = 0.5 * (p.place[at(k)].s + q.place[at(k)].s);
+      joints_[static_cast<std::size_t>(order[i])].place[at(k)].s = s;
+      joints_[static_cast<std::size_t>(order[i + 1])].place[at(k)].s = std::nextafter(s, 1.0);
+      return true;
+    }
+  }
+  Box2 where;
+  where.include(p.point);
+  where.include(q.point);
+  return fail("the order of common points along a side is lost in rounding", where);
 }
 
 bool Arrangement::classify(int k) {
@@ -279,12 +396,8 @@ bool Arrangement::classify(int k) {
 }
 
 bool Arrangement::classify_part(int k, BoundaryPart& part) {
-  const BoundaryJoint &p = joints_[static_cast<std::size_t>(part.from)],
-                      &q = joints_[static_cast<std::size_t>(part.to)];
-  // cross(a', b') > 0: the second triangle's side passes from right to left of the first's, into
-  // the first; and the first's goes from left to right, out of the second.
-  const int enters = k == 0 ? -1 : 1;
-  const int at_start = p.sign * enters, at_end = -q.sign * enters;
+  const BoundaryJoint &p = joint(part.from), &q = joint(part.to);
+  const int at_start = p.sign * entering(k), at_end = -q.sign * entering(k);
   if (at_start + at_end != 0) {  // known, and not contradictory
     part.place = at_start + at_end > 0 ? PartClass::inside : PartClass::outside;
     return true;
@@ -310,34 +423,40 @@ bool Arrangement::classify_part(int k, BoundaryPart& part) {
 
 /// By a point strictly between the joints: no common point is there, so any one will do.
 bool Arrangement::classify_exactly(int k, BoundaryPart& part) {
-  const BoundaryJoint &p = joints_[static_cast<std::size_t>(part.from)],
-                      &q = joints_[static_cast<std::size_t>(part.to)];
-  const BoundaryPlace &start = p.place[at(k)], &end = q.place[at(k)];
-  const auto decided = [&](int side, double s) {
-    const Place place = place_of(k, side, s);
-    part.place = place == Place::inside ? PartClass::inside : PartClass::outside;
-    return place != Place::unknown;
-  };
-  int side = start.edge;
-  double lo = p.hi[at(k)];
-  for (bool first = true;; first = false) {
-    // The joint's own side comes round again when the part goes once around.
-    const bool last = side == end.edge && (!first || start.s < end.s);
-    const double hi = last ? q.lo[at(k)] : 1.0;
-    for (const double f : {0.5, 0.3125, 0.6875}) {
-      const double s = lo + f * (hi - lo);
-      if (lo < s && s < hi && decided(side, s)) return true;
-    }
-    if (last) break;
-    side = (side + 1) % 3;
-    lo = 0.0;
-    if (side == end.edge && end.s == 0.0) break;
-    if (decided(side, 0.0)) return true;
-  }
+  const BoundaryJoint &p = joint(part.from), &q = joint(part.to);
+  const int place = class_between(k, p.place[at(k)], p.hi[at(k)], q.place[at(k)], q.lo[at(k)]);
+  part.place = place > 0 ? PartClass::inside : PartClass::outside;
+  if (place != 0) return true;
   Box2 where;
   where.include(p.point);
   where.include(q.point);
   return fail("what is between two common points could not be told", where);
+}
+
+int Arrangement::class_between(int k, const BoundaryPlace& start, double after,
+                               const BoundaryPlace& end, double before_end) const {
+  Place place = Place::unknown;
+  const auto decided = [&](int side, double s) {
+    place = place_of(k, side, s);
+    return place != Place::unknown;
+  };
+  const auto result = [&] { return place == Place::inside ? 1 : -1; };
+  int side = start.edge;
+  double lo = after;
+  for (bool first = true;; first = false) {
+    // The joint's own side comes round again when the part goes once around.
+    const bool last = side == end.edge && (!first || start.s < end.s);
+    const double hi = last ? before_end : 1.0;
+    for (const double f : {0.5, 0.3125, 0.6875}) {
+      const double s = lo + f * (hi - lo);
+      if (lo < s && s < hi && decided(side, s)) return result();
+    }
+    if (last) return 0;
+    side = (side + 1) % 3;
+    lo = 0.0;
+    if (side == end.edge && end.s == 0.0) return 0;
+    if (decided(side, 0.0)) return result();
+  }
 }
 
 Arrangement::Place Arrangement::place_of(int k, int side, double s) const {

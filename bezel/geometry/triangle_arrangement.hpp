@@ -39,7 +39,10 @@ struct BoundaryJoint {
   std::array<double, 2> lo, hi;  ///< the true parameters are between these; corners: equal
   int sign;    ///< of cross(a', b') where a side simply crosses a side, proven; 0: nothing known
   Vec2 point;  ///< for corners the corner
-  std::array<std::int32_t, 2> position;  ///< rank along each boundary
+  // While the joints are gathered:
+  std::array<std::uint8_t, 2> seen;  ///< corners: from its side's start (1), its side's end (2)
+  std::array<double, 2> error;       ///< of the computed parameters
+  int seen_sign;                     ///< of the crossing at a corner
 };
 
 enum class PartClass : std::uint8_t { inside, outside, along, against };
@@ -77,10 +80,20 @@ class Arrangement {
   bool meet(int i, int j, double coincidence_distance);
   bool add_contact(const BoundaryJoint& contact);
   bool join(BoundaryJoint& joint, const BoundaryJoint& contact);
+  const BoundaryJoint& joint(std::int32_t i) const { return joints_[static_cast<std::size_t>(i)]; }
+  void settle_corners();
   bool sort_joints();
+  void tighten(std::int32_t i);
+  bool apart(int k, std::int32_t i, std::int32_t j) const;
+  bool order_pair(int k, std::size_t i);
   bool classify(int k);
   bool classify_part(int k, BoundaryPart& part);
   bool classify_exactly(int k, BoundaryPart& part);
+  /// Of what lies strictly between two places of boundary k, after parameter `after` of the first's
+  /// side and before `before_end` of the second's: +1 inside the other triangle, -1 outside, 0
+  /// undecided. The same place twice: once around.
+  int class_between(int k, const BoundaryPlace& start, double after, const BoundaryPlace& end,
+                    double before_end) const;
   /// Is the point at s of a side of triangle k inside the other? on_boundary or undecided: nothing.
   enum class Place : std::uint8_t { inside, outside, unknown };
   Place place_of(int k, int side, double s) const;

@@ -75,12 +75,12 @@ bool Assembly::select(Operation operation) {
     else
       add_piece({1, part.from, part.to, false, false, false});
   }
-  std::vector<int> balance(leaving_.size(), 0);
+  balance_.assign(leaving_.size(), 0);
   for (const Piece& piece : pieces_) {
-    ++balance[at(piece.from)];
-    --balance[at(piece.to)];
+    ++balance_[at(piece.from)];
+    --balance_[at(piece.to)];
   }
-  return std::all_of(balance.begin(), balance.end(), [](int x) { return x == 0; });
+  return std::all_of(balance_.begin(), balance_.end(), [](int x) { return x == 0; });
 }
 
 /// Where two pieces arrive and two leave, all four branches of the boundaries are selected. Either

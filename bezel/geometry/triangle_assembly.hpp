@@ -57,6 +57,7 @@ class Assembly {
   bool cut_ = false;
   std::vector<Piece> pieces_;
   std::vector<std::array<std::int32_t, 2>> leaving_;  ///< per joint: piece of each triangle, or -1
+  std::vector<int> balance_;  ///< per joint: pieces that leave minus pieces that arrive
   std::vector<Segment> segments_;
 };
 

@@ -1,6 +1,7 @@
 #include "bezel/geometry/triangle_intersection.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -26,22 +27,23 @@ namespace {
 bool plainly_valid(int g, std::span<const Vec2> control) {
   if (g > 3) return false;
   using bernstein::triangle_index;
-  const int e = g - 1;
-  for (int k = 0; k <= e; ++k)
-    for (int j = 0; j + k <= e; ++j) {
-      const Vec2 du = control[static_cast<std::size_t>(triangle_index(g, j + 1, k))] -
-                      control[static_cast<std::size_t>(triangle_index(g, j, k))];
-      for (int q = 0; q <= e; ++q)
-        for (int p = 0; p + q <= e; ++p) {
-          const Vec2 dv = control[static_cast<std::size_t>(triangle_index(g, p, q + 1))] -
-                          control[static_cast<std::size_t>(triangle_index(g, p, q))];
-          const double left = du.x() * dv.y(), right = du.y() * dv.x();
-          // Differences, products and their difference: under 4 u of either product.
-          if (!(left - right > 0x1p-50 * (std::fabs(left) + std::fabs(right)) + 0x1p-900))
-            return false;
-        }
+  std::array<Vec2, static_cast<std::size_t>(bernstein::triangle_size(2))> du, dv;
+  std::size_t n = 0;
+  for (int k = 0; k < g; ++k)
+    for (int j = 0; j + k < g; ++j, ++n) {
+      const Vec2& base = control[static_cast<std::size_t>(triangle_index(g, j, k))];
+      du[n] = control[static_cast<std::size_t>(triangle_index(g, j + 1, k))] - base;
+      dv[n] = control[static_cast<std::size_t>(triangle_index(g, j, k + 1))] - base;
     }
-  return true;
+  bool positive = true;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) {
+      const double left = du[i].x() * dv[j].y(), right = du[i].y() * dv[j].x();
+      // Differences, products and their difference: under 4 u of either product.
+      positive =
+          positive && left - right > 0x1p-50 * (std::fabs(left) + std::fabs(right)) + 0x1p-900;
+    }
+  return positive;
 }
 
 /// False: undecided.

@@ -218,54 +218,37 @@ class HardPairs : public testing::Test {
 TEST_F(HardPairs, NineHits) {
   run_all("NineHits", support::nine_hits());
   check("nine hits", exact, {}, 0, 0);
-  check("nine hits, rounded maps", rough, {}, 6, 0);
+  check("nine hits, rounded maps", rough, {}, 0, 0);
 }
 
 TEST_F(HardPairs, NearTangents) {
   run_all("NearTangents", support::near_tangents());
-  check("near tangents", exact, {}, 1, 0);
-  check("near tangents, rounded maps", rough, {}, 4, 0);
+  check("near tangents", exact, {}, 0, 0);
+  check("near tangents, rounded maps", rough, {}, 0, 0);
 }
 
 TEST_F(HardPairs, Contacts) {
   run_all("Contacts", support::contacts());
-  check("contacts", exact, {}, 1, 0);
-  check("contacts, rounded maps", rough, {}, 17, 0);
+  check("contacts", exact, {}, 0, 0);
+  check("contacts, rounded maps", rough, {}, 0, 0);
 }
 
 TEST_F(HardPairs, Sheared) {
   run_all("Sheared", support::sheared());
-  check("sheared", exact,
-        {"shear 2^-49 | dyadic map 4", "shear 2^-50 | dyadic map 3", "shear 2^-50 | dyadic map 4"},
-        8, 15);
-  check("sheared, rounded maps", rough,
-        {"shear 2^-24 | map 5", "shear 2^-26 | map 2", "shear 2^-26 | map 4", "shear 2^-26 | map 6",
-         "shear 2^-28 | map 1", "shear 2^-28 | map 7", "shear 2^-29 | map 2", "shear 2^-29 | map 5",
-         "shear 2^-31 | map 2", "shear 2^-34 | map 0", "shear 2^-34 | map 1", "shear 2^-35 | map 4",
-         "shear 2^-35 | map 6", "shear 2^-36 | map 1", "shear 2^-37 | map 3", "shear 2^-39 | map 1",
-         "shear 2^-39 | map 6", "shear 2^-39 | map 7", "shear 2^-40 | map 7", "shear 2^-43 | map 4",
-         "shear 2^-44 | map 4", "shear 2^-44 | map 7", "shear 2^-45 | map 3", "shear 2^-46 | map 0",
-         "shear 2^-48 | map 4", "shear 2^-48 | map 5", "shear 2^-48 | map 6", "shear 2^-49 | map 1",
-         "shear 2^-49 | map 2", "shear 2^-50 | map 3", "shear 2^-50 | map 4", "shear 2^-50 | map 5",
-         "shear 2^-50 | map 7"},
-        11, 0);
+  check("sheared", exact, {}, 0, 0);
+  check("sheared, rounded maps", rough, {}, 0, 0);
 }
 
 TEST_F(HardPairs, Overlaps) {
   run_all("Overlaps", support::overlaps());
-  check("overlaps", exact,
-        {"overlap, inner part | moved by 2^1", "overlap, inner part | dyadic map 7",
-         "overlap, elevated | exchanged, reversed", "overlap, elevated | moved by 2^20",
-         "overlap, part, reversed and elevated | moved by 2^1"},
-        17, 0);
-  check("overlaps, rounded maps", rough, {"overlap, part, reversed and elevated | map 7"}, 53, 0);
+  check("overlaps", exact, {}, 0, 0);
+  check("overlaps, rounded maps", rough, {}, 0, 0);
 }
 
 TEST_F(HardPairs, SingularAndEnds) {
   run_all("SingularAndEnds", support::singular_and_ends());
-  check("singular and ends", exact, {"loop and itself", "cusp on its tangent"}, 0, 16);
-  check("singular and ends, rounded maps", rough, {"loop and itself", "cusp on its tangent"}, 10,
-        8);
+  check("singular and ends", exact, {}, 0, 0);
+  check("singular and ends, rounded maps", rough, {}, 0, 0);
 }
 
 template <class Draw>
@@ -303,20 +286,7 @@ TEST(RandomPairs, Cubics) {
                      const auto c = support::random_curve(random, 3);
                      return CurvePair{"", c, support::jittered(c, random, 5 + i % 50)};
                    }),
-        {"cubics with jitter 41",  "cubics with jitter 44",  "cubics with jitter 97",
-         "cubics with jitter 145", "cubics with jitter 147", "cubics with jitter 194",
-         "cubics with jitter 196", "cubics with jitter 197", "cubics with jitter 245",
-         "cubics with jitter 297", "cubics with jitter 345", "cubics with jitter 394",
-         "cubics with jitter 396", "cubics with jitter 397", "cubics with jitter 445",
-         "cubics with jitter 446", "cubics with jitter 495", "cubics with jitter 497",
-         "cubics with jitter 546", "cubics with jitter 596", "cubics with jitter 641",
-         "cubics with jitter 696", "cubics with jitter 742", "cubics with jitter 744",
-         "cubics with jitter 746", "cubics with jitter 747", "cubics with jitter 791",
-         "cubics with jitter 794", "cubics with jitter 795", "cubics with jitter 846",
-         "cubics with jitter 894", "cubics with jitter 896", "cubics with jitter 946",
-         "cubics with jitter 992", "cubics with jitter 995", "cubics with jitter 996",
-         "cubics with jitter 997"},
-        72, 0);
+        {}, 0, 0);
   check("joints",
         run_random("joints", 1000, true,
                    [](RandomStream& random, int i) {

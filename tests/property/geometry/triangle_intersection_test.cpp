@@ -4,7 +4,9 @@
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -49,6 +51,42 @@ TEST(TriangleRegions, OfTrianglesOnALattice) {
   EXPECT_LE(unresolved, 0);
 }
 
+TEST(TriangleRegions, ScaleByPowersOfTwo) {
+  RandomStream random("TriangleRegions.ScaleByPowersOfTwo", 1);
+  for (int i = 0; i < 300; ++i) {
+    const int g = 1 + static_cast<int>(random.below(4));
+    const bool lattice = random.below(2) == 0;
+    const auto triangle = [&] {
+      return lattice ? support::lattice_triangle(random, g, 4)
+                     : support::random_triangle(random, g, 1.0, {{random.uniform(), 0.3}}, 0.5);
+    };
+    const CurvedTriangle a = triangle(), b = triangle();
+    const auto found = intersect(a, b);
+    for (const double scale : {0x1p-300, 0x1p200}) {
+      CurvedTriangle p = a, q = b;
+      for (CurvedTriangle* t : {&p, &q})
+        for (Vec2& c : t->control) c *= scale;
+      const auto scaled = intersect(p, q);
+      ASSERT_EQ(scaled.relation, found.relation) << show(a, b, found);
+      ASSERT_EQ(scaled.polygons.size(), found.polygons.size()) << show(a, b, found);
+      EXPECT_NEAR(support::total_area(scaled.polygons) / scale / scale,
+                  support::total_area(found.polygons), 1e-13)
+          << show(a, b, found);
+    }
+  }
+}
+
+TEST(TriangleRegions, OfHighDegree) {
+  RandomStream random("TriangleRegions.OfHighDegree", 1);
+  for (const int g : {7, 12, 20, 40}) {
+    const CurvedTriangle a = support::random_triangle(random, g, 1.0, {}, 0.2),
+                         b = support::random_triangle(random, 5, 1.0, {{0.5, 0.3}}, 0.2);
+    const auto result = check_regions(a, b, random, 2);
+    EXPECT_FALSE(result.unresolved) << show(a, b, intersect(a, b));
+    EXPECT_EQ(result.wrong, "") << show(a, b, intersect(a, b));
+  }
+}
+
 using RationalPoint = std::array<mpq_class, 2>;
 
 mpq_class rational_area(const std::vector<RationalPoint>& p) {
@@ -87,6 +125,55 @@ std::vector<RationalPoint> rational(const CurvedTriangle& t) {
     out.push_back({mpq_class(p.x()), mpq_class(p.y())});
   }
   return out;
+}
+
+/// Of a curved polygon: half the integral of cross(c, c') over its edges, exactly.
+mpq_class rational_area(const bezel::CurvedPolygon& polygon) {
+  const auto choose = [](int n, int k) {
+    mpz_class out;
+    mpz_bin_uiui(out.get_mpz_t(), static_cast<unsigned long>(n), static_cast<unsigned long>(k));
+    return mpq_class(out);
+  };
+  mpq_class sum = 0;
+  for (std::size_t e = 0; e < polygon.size(); ++e) {
+    const auto c = polygon.control(e);
+    const int d = static_cast<int>(c.size()) - 1;
+    for (int i = 0; i <= d; ++i)
+      for (int j = 0; j < d; ++j) {
+        const Vec2 &p = c[static_cast<std::size_t>(i)], &q = c[static_cast<std::size_t>(j)],
+                   &r = c[static_cast<std::size_t>(j + 1)];
+        sum += choose(d, i) * choose(d - 1, j) / choose(2 * d - 1, i + j) *
+               (p.x() * (mpq_class(r.y()) - q.y()) - p.y() * (mpq_class(r.x()) - q.x()));
+      }
+  }
+  return sum / 4;
+}
+
+TEST(CurvedPolygonArea, IsWithinItsBound) {
+  RandomStream random("CurvedPolygonArea.IsWithinItsBound", 1);
+  double worst = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    const int g = 1 + static_cast<int>(random.below(6)), h = 1 + static_cast<int>(random.below(6));
+    const double x = std::exp2(random.uniform(-10.0, 20.0));
+    const CurvedTriangle a = support::random_triangle(random, g, 1.0, {{x, -x}}, 0.3),
+                         b = support::random_triangle(random, h, 1.0, {{x + 0.3, -x}}, 0.3);
+    for (const bezel::CurvedPolygon& p : intersect(a, b).polygons) {
+      double radius = 0.0, degrees = 0.0, terms = 0.0;
+      for (std::size_t e = 0; e < p.size(); ++e) {
+        const double d = static_cast<double>(p.control(e).size()) - 1.0;
+        degrees += d;
+        terms += d * (d + 1.0);
+        for (const Vec2& c : p.control(e))
+          radius = std::max({radius, std::fabs(c.x() - p.control(0)[0].x()),
+                             std::fabs(c.y() - p.control(0)[0].y())});
+      }
+      const double bound = 0x1p-52 * radius * radius * degrees * (terms + 12.0);
+      const mpq_class error = abs(mpq_class(area(p)) - rational_area(p));
+      worst = std::max(worst, error.get_d() / bound);
+    }
+  }
+  EXPECT_LT(worst, 0.02);  // 0.006 seen
+  EXPECT_GT(worst, 0.0);
 }
 
 CurvedTriangle elevated(const CurvedTriangle& t, int by) {

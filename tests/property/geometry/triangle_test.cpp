@@ -84,6 +84,40 @@ TEST(TriangleProperty, LocateAndInvertFindThePoint) {
     }
 }
 
+/// Many points of one triangle, inside and on its boundary, from starts anywhere in it.
+TEST(TriangleProperty, LocateAndInvertFindManyPoints) {
+  RandomStream random("LocateAndInvertFindManyPoints", 1);
+  for (int g = 1; g <= 12; ++g)
+    for (int trial = 0; trial < 10; ++trial) {
+      const Points net = perturbed(random, g, 0.15);
+      std::vector<Lambda> lambda, start;
+      Points points;
+      for (int i = 0; i < 100; ++i) {
+        Lambda l = random_lambda(random);
+        if (i % 4 == 1) l = {0.0, l[1], 1.0 - l[1]};
+        if (i % 4 == 2) l = {1.0 - l[2], 0.0, l[2]};
+        if (i % 4 == 3) l = {1.0 - l[1], l[1], 0.0};
+        if (i % 25 == 0) l = {0.0, 1.0, 0.0};
+        lambda.push_back(l);
+        points.push_back(evaluate(g, net, l));
+        start.push_back(random_lambda(random));
+      }
+      std::vector<bezel::LocateResult> located(points.size());
+      std::vector<bezel::InverseResult> inverted(points.size());
+      locate(g, net, points, located);
+      invert(g, net, points, start, inverted);
+      // The points are rounded values of de Casteljau, to 3 g u of about 1; so are the residuals.
+      const double bound = 8 * (g + 1) * 0x1p-53;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        ASSERT_EQ(located[i].status, Location::inside) << g << " " << i;
+        EXPECT_LT(distance(located[i].lambda, lambda[i]), 4 * bound) << g << " " << i;
+        EXPECT_LT(norm(evaluate(g, net, located[i].lambda) - points[i]), bound);
+        ASSERT_TRUE(inverted[i].converged) << g << " " << i;
+        EXPECT_LT(distance(inverted[i].lambda, lambda[i]), 4 * bound) << g << " " << i;
+      }
+    }
+}
+
 /// Just outside a side, at distances from 1e-10 up: proven outside; just inside: inside.
 TEST(TriangleProperty, LocateNearTheBoundary) {
   RandomStream random("LocateNearTheBoundary", 1);
@@ -105,6 +139,10 @@ TEST(TriangleProperty, LocateNearTheBoundary) {
             << g << " " << trial << " " << off;
         EXPECT_EQ(locate(g, net, evaluate(g, net, in)).status, Location::inside)
             << g << " " << trial << " " << off;
+        std::vector<bezel::LocateResult> both(2);
+        locate(g, net, Points{evaluate(g, net, out), evaluate(g, net, in)}, both);
+        EXPECT_EQ(both[0].status, Location::outside) << g << " " << trial << " " << off;
+        EXPECT_EQ(both[1].status, Location::inside) << g << " " << trial << " " << off;
       }
     }
 }

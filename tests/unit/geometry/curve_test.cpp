@@ -64,10 +64,6 @@ TEST(CurveTest, BadInput) {
   options.coincidence_distance = -1;
   EXPECT_EQ(message_of([&] { intersect(line, line, options); }),
             "the coincidence distance must be finite and not negative");
-  EXPECT_EQ(message_of([&] {
-              bezel::foot_point(line, Vec2{{INFINITY, 0}});
-            }),
-            "the point is not finite");
 }
 
 TEST(IntersectTest, TwoLines) {
@@ -166,23 +162,44 @@ TEST(IntersectTest, AShallowCrossingIsAnOverlapOnlyWithinTheBand) {
   EXPECT_EQ(intersect(p, q, band).overlaps.size(), 1u);
 }
 
-TEST(IntersectTest, ACuspOnTheOtherCurveIsUnresolvedNotMissed) {
-  const Points cusp{{{0, 0}}, {{1, 1}}, {{0, 1}}, {{1, 0}}}, line{{{-1, 0.75}}, {{2, 0.75}}};
-  const auto found = intersect(cusp, line);
-  ASSERT_EQ(found.unresolved.size(), 1u);
-  EXPECT_EQ(found.unresolved[0].reason, "the curves meet where one of them is singular");
-  EXPECT_LE(found.unresolved[0].s_lo, 0.5);
-  EXPECT_GE(found.unresolved[0].s_hi, 0.5);
+TEST(IntersectTest, ACuspOnTheOtherCurve) {
+  const Points cusp{{{0, 0}}, {{1, 1}}, {{0, 1}}, {{1, 0}}};
+  const auto across = intersect(cusp, Points{{{-1, 0.75}}, {{2, 0.75}}});
+  ASSERT_EQ(across.tangencies.size(), 1u);
+  EXPECT_EQ(across.tangencies[0].s, 0.5);
+  EXPECT_EQ(across.tangencies[0].t, 0.5);
+  EXPECT_EQ(across.tangencies[0].order, 2);
+  const auto along = intersect(cusp, Points{{{0.5, 0}}, {{0.5, 2}}});
+  ASSERT_EQ(along.tangencies.size(), 1u);
+  EXPECT_EQ(along.tangencies[0].s, 0.5);
+  EXPECT_EQ(along.tangencies[0].t, 0.375);
+  EXPECT_EQ(along.tangencies[0].order, 3);
 }
 
-TEST(FootPointTest, NearestOfSeveral) {
-  const Points parabola{{{-1, 1}}, {{0, -1}}, {{1, 1}}};  // y = x^2
-  const auto foot = bezel::foot_point(parabola, Vec2{{0, -1}});
-  EXPECT_NEAR(foot.s, 0.5, 1e-9);
-  EXPECT_NEAR(foot.distance, 1.0, 1e-15);
-  const auto end = bezel::foot_point(parabola, Vec2{{3, 3}});
-  EXPECT_EQ(end.s, 1.0);
-  EXPECT_EQ(end.point, (Vec2{{1, 1}}));
+TEST(IntersectTest, CurvesOnOneLine) {
+  // s^2 (2, 1) has the line's points at other parameters; the last curve turns back at 3/4.
+  const Points line{{{0, 0}}, {{2, 1}}}, slow{{{0, 0}}, {{0, 0}}, {{2, 1}}};
+  const auto whole = intersect(line, slow);
+  ASSERT_EQ(whole.overlaps.size(), 1u);
+  EXPECT_TRUE(whole.crossings.empty() && whole.tangencies.empty() && whole.unresolved.empty());
+  EXPECT_EQ(whole.overlaps[0].s0, 0.0);
+  EXPECT_EQ(whole.overlaps[0].s1, 1.0);
+  EXPECT_EQ(whole.overlaps[0].t0, 0.0);
+  EXPECT_EQ(whole.overlaps[0].t1, 1.0);
+  const Points turning{{{0, 0}}, {{6, 3}}, {{4, 2}}};  // 12 s - 8 s^2 in x
+  const auto twice = intersect(Points{{{4.25, 2.125}}, {{8, 4}}}, turning);
+  ASSERT_EQ(twice.overlaps.size(), 2u);
+  for (const auto& o : twice.overlaps) {
+    EXPECT_EQ(std::min(o.s0, o.s1), 0.0);
+    EXPECT_NEAR(o.s1, 1.0 / 15, 1e-16);  // x = 4.5
+    EXPECT_EQ(o.t1, 0.75);
+    EXPECT_NEAR(std::fabs(o.t0 - 0.75), std::sqrt(0.25 / 8), 1e-15);
+  }
+  const auto touching = intersect(line, Points{{{2, 1}}, {{3, 1.5}}, {{5, 2.5}}});
+  ASSERT_EQ(touching.crossings.size(), 1u);
+  EXPECT_EQ(touching.crossings[0].s, 1.0);
+  EXPECT_EQ(touching.crossings[0].t, 0.0);
+  EXPECT_TRUE(touching.overlaps.empty() && touching.unresolved.empty());
 }
 
 }  // namespace
