@@ -24,7 +24,11 @@ class Reader {
   Shapes read() {
     if (root_.kind != Kind::object)
       fail(root_, "", fmt::format("found {}, expected an object", described(root_)));
-    check_keys(root_, "", {"curves", "triangles", "pairs"});
+    if (root_.find("a") || root_.find("b")) {  // one pair
+      read_pair(root_, "");
+      return std::move(out_);
+    }
+    check_keys(root_, "", {"curves", "triangles", "pairs", "a", "b"});
     if (root_.items.size() != 1)
       fail(root_, "",
            fmt::format("found {} of the keys \"curves\", \"triangles\" and \"pairs\", expected one",
@@ -61,19 +65,24 @@ class Reader {
   }
 
   void read_pairs(const JsonValue& list) {
-    out_.in_pairs = true;
     if (list.items.empty()) fail(list, "pairs", "found 0, expected at least 1");
     for (std::size_t i = 0; i < list.items.size(); ++i) {
-      const JsonValue& item = list.items[i];
       const std::string where = fmt::format("pair {}", i);
-      check_object(item, where);
-      check_keys(item, where, {"a", "b"});
-      for (const char* key : {"a", "b"})
-        read_member(required(item, where, key), fmt::format("{}, {}", where, key));
-      if (out_.shapes[2 * i].triangle != out_.shapes[2 * i + 1].triangle)
-        fail(item, where, "found a curve and a triangle, expected two of a kind");
-      out_.pairs.emplace_back(2 * i, 2 * i + 1);
+      check_object(list.items[i], where);
+      read_pair(list.items[i], where);
     }
+  }
+
+  void read_pair(const JsonValue& item, const std::string& where) {
+    out_.in_pairs = true;
+    check_keys(item, where, {"a", "b"});
+    for (const char* key : {"a", "b"})
+      read_member(required(item, where, key),
+                  where.empty() ? std::string(key) : fmt::format("{}, {}", where, key));
+    const std::size_t n = out_.shapes.size();
+    if (out_.shapes[n - 2].triangle != out_.shapes[n - 1].triangle)
+      fail(item, where, "found a curve and a triangle, expected two of a kind");
+    out_.pairs.emplace_back(n - 2, n - 1);
   }
 
   void read_member(const JsonValue& item, const std::string& where) {

@@ -18,7 +18,7 @@ struct Shape {
   int degree = 0;
   std::vector<Vec2> control;  ///< finite, as many as the degree asks for
   std::int64_t line = 0;      ///< where it begins in the file
-  std::string place;          ///< "curve 0", "triangle 1", "pair 0, a"
+  std::string place;          ///< "curve 0", "triangle 1", "pair 0, a", "a"
   std::string name;           ///< as given, or the place
 };
 
@@ -38,9 +38,10 @@ inline constexpr std::size_t most_shapes = 1000;
 ///     {"curves": [{"control": [[x, y], ...], "degree": d, "name": "..."}, ...]}
 ///     {"triangles": [{"control": ..., "degree": g, "name": "..."}, ...]}
 ///     {"pairs": [{"a": {"curve": [[x, ...], [y, ...]]}, "b": {"curve": ...}}, ...]}
+///     {"a": {"curve": ...}, "b": {"curve": ...}}
 ///
-/// and in the last "triangle" instead of "curve"; "degree" and "name" may be left out. A number is
-/// a JSON number or a string that parse_number reads.
+/// and in the last two "triangle" instead of "curve"; "degree" and "name" may be left out. A number
+/// is a JSON number or a string that parse_number reads.
 ///
 /// @param file  name, for messages
 /// @throws  InputError with file, line and element ("curve 1, point 2, y", counted from 0)

@@ -24,7 +24,8 @@ const std::vector<std::string> seeds = {
     "0], [1, 0], [2, 0], [0, 1], [1, 1], [0, 2]]}]}",
     "{\"pairs\": [{\"a\": {\"curve\": [[0, 1], [0, 1]]}, \"b\": {\"curve\": [[0], [0]]}},\n "
     "{\"a\": "
-    "{\"triangle\": [[0, 1, 0], [0, 0, 1]]}, \"b\": {\"triangle\": [[0, 1, 0], [0, 0, 1]]}}]}"};
+    "{\"triangle\": [[0, 1, 0], [0, 0, 1]]}, \"b\": {\"triangle\": [[0, 1, 0], [0, 0, 1]]}}]}",
+    "{\"a\": {\"curve\": [[0, 1], [0, 1]], \"name\": \"x\"}, \"b\": {\"curve\": [[0], [0]]}}"};
 
 TEST(Shapes, AllForms) {
   const Shapes curves = read_shapes("f", seeds[0]);
@@ -45,6 +46,10 @@ TEST(Shapes, AllForms) {
   EXPECT_EQ(pairs.pairs, (std::vector<std::pair<std::size_t, std::size_t>>{{0, 1}, {2, 3}}));
   EXPECT_TRUE(pairs.shapes[2].triangle);
   EXPECT_EQ(pairs.shapes[3].control[1], (Vec2{{1, 0}}));
+  const Shapes pair = read_shapes("f", seeds[3]);
+  EXPECT_EQ(pair.pairs.size(), 1U);
+  EXPECT_EQ(pair.shapes[0].name, "x");
+  EXPECT_EQ(pair.shapes[1].name, "b");
 }
 
 TEST(Shapes, OneCurveHasNoPairsAndManyHaveAll) {
