@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "bezel/base/error.hpp"
 #include "bezel/geometry/intersect_exact.hpp"
@@ -28,6 +29,27 @@ bool outside_fat_line(const CurveCache& curve, const CurveCache& other, double m
   return true;
 }
 
+/// With a distance, of curves whose products would overflow or vanish: scaled by a power of two.
+void intersect_scaled(const CurveCache& a, const CurveCache& b, double tol,
+                      CurveIntersections& out) {
+  const int exponent = std::ilogb(std::max(a.magnitude, b.magnitude)) + 1;
+  const auto scaled = [](const Vec2& p, int by) {
+    return Vec2{{std::ldexp(p.x(), by), std::ldexp(p.y(), by)}};
+  };
+  std::vector<Vec2> c, d;
+  for (const Vec2& p : a.control) c.push_back(scaled(p, -exponent));
+  for (const Vec2& p : b.control) d.push_back(scaled(p, -exponent));
+  // A distance far above the curves, or below their rounding, is as good as any such.
+  IntersectOptions options;
+  options.coincidence_distance = std::clamp(std::ldexp(tol, -exponent), 0x1p-100, 4.0);
+  IntersectSearch(cache_curve(c), cache_curve(d), options, out).run();
+  for (Crossing& x : out.crossings) {
+    x.point_a = scaled(x.point_a, exponent);
+    x.point_b = scaled(x.point_b, exponent);
+  }
+  for (Overlap& x : out.overlaps) x.gap = std::ldexp(x.gap, exponent);
+}
+
 }  // namespace
 
 void intersect(const CurveCache& a, const CurveCache& b, const IntersectOptions& options,
@@ -39,8 +61,12 @@ void intersect(const CurveCache& a, const CurveCache& b, const IntersectOptions&
   const double tol = options.coincidence_distance;
   if (!(tol >= 0) || !std::isfinite(tol))
     throw InputError("the coincidence distance must be finite and not negative");
-  const double margin =
-      tol > 0.0 ? std::max(tol, 0x1p-51 * std::max(a.magnitude, b.magnitude)) : 0.0;
+  const double magnitude = std::max(a.magnitude, b.magnitude);
+  if (tol > 0.0 && magnitude > 0.0 && !(magnitude > 0x1p-300 && magnitude < 0x1p300)) {
+    intersect_scaled(a, b, tol, out);
+    return;
+  }
+  const double margin = tol > 0.0 ? std::max(tol, 0x1p-51 * magnitude) : 0.0;
   if (a.box.lo.x() > b.box.hi.x() + margin || b.box.lo.x() > a.box.hi.x() + margin ||
       a.box.lo.y() > b.box.hi.y() + margin || b.box.lo.y() > a.box.hi.y() + margin)
     return;

@@ -158,11 +158,10 @@ class Search {
   }
 
   Crossing crossing(const IsolatedRoot& r) const {
-    ResolvedRoot root = {r.s, r.t, r.s_lo, r.s_hi, r.t_lo, r.t_hi, 1, r.sign, 0.0, false, false};
-    return crossing(root);
+    return crossing({r.s, r.t, r.s_lo, r.s_hi, r.t_lo, r.t_hi, 1, r.sign, 0.0, false, false, true});
   }
   static ResolvedRoot known(const Crossing& c) {
-    return {c.s, c.t, c.s_lo, c.s_hi, c.t_lo, c.t_hi, 1, c.sign, 0.0, false, false};
+    return {c.s, c.t, c.s_lo, c.s_hi, c.t_lo, c.t_hi, 1, c.sign, 0.0, false, false, true};
   }
 
   /// A simple root close to the border of [0, 1]^2, or ill-conditioned.
@@ -173,14 +172,17 @@ class Search {
         if ((i == 0 ? box.s0 == 0.0 : box.s1 == 1.0) && (j == 0 ? box.t0 == 0.0 : box.t1 == 1.0) &&
             (i == 0 ? a_.front() : a_.back()) == (j == 0 ? b_.front() : b_.back())) {
           const double s = i, t = j;
-          ResolvedRoot root{s, t, box.s0, box.s1, box.t0, box.t1, 1, box.sign, 0.0, true, true};
+          ResolvedRoot root{s, t,        box.s0, box.s1, box.t0, box.t1,
+                            1, box.sign, 0.0,    true,   true,   false};
           resolution_.roots.push_back(root);
           return;
         }
-    const double ds = 0x1p-10 * (box.s1 - box.s0), dt = 0x1p-10 * (box.t1 - box.t0);
+    // Not below what the doubles around s and t can tell.
+    const double ds = std::max(0x1p-10 * (box.s1 - box.s0), 0x1p-36);
+    const double dt = std::max(0x1p-10 * (box.t1 - box.t0), 0x1p-36);
     const std::size_t before = resolution_.roots.size();
-    process({std::max(box.s0, box.s - ds), std::min(box.s1, box.s + ds),
-             std::max(box.t0, box.t - dt), std::min(box.t1, box.t + dt), deepest - 10});
+    process({std::max(0.0, box.s - ds), std::min(1.0, box.s + ds), std::max(0.0, box.t - dt),
+             std::min(1.0, box.t + dt), deepest - 10});
     if (resolution_.roots.size() == before) process({box.s0, box.s1, box.t0, box.t1, 0});
   }
 
@@ -202,7 +204,14 @@ class Search {
     } else {
       join(boxes);
     }
-    for (const Box& box : boxes) process(box);
+    // A hard place must not take the work that others need.
+    int left = nodes_;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      const int share = left / static_cast<int>(boxes.size() - i) + 1;
+      nodes_ = share;
+      process(boxes[i]);
+      left -= share - std::max(nodes_, 0);
+    }
     return false;
   }
 
@@ -320,7 +329,7 @@ class Search {
           {to_double(first), to_double(last), to_double(t_first), to_double(t_last), 0.0});
     if (order == 0) {
       const double s = to_double(first), t = to_double(t_first);
-      resolution_.roots.push_back({s, t, s, s, t, t, 0, 0, 0.0, true, true});
+      resolution_.roots.push_back({s, t, s, s, t, t, 0, 0, 0.0, true, true, false});
     }
   }
 
@@ -372,12 +381,11 @@ class Search {
   // ---- Boxes ----
 
   void process(const Box& start) {
-    std::vector<Box> stack{start};
+    std::vector<Box> queue{start};  // larger boxes first
     TubeSearch on_b(*exact_a_, *exact_b_, false, nodes_, resolution_);
     TubeSearch on_a(*exact_b_, *exact_a_, true, nodes_, resolution_);
-    while (!stack.empty()) {
-      const Box box = stack.back();
-      stack.pop_back();
+    for (std::size_t next = 0; next < queue.size(); ++next) {
+      const Box box = queue[next];
       if (--nodes_ < 0) {
         resolution_.undecided.push_back({box.s0, box.s1, box.t0, box.t1, "more work than allowed"});
         continue;
@@ -407,10 +415,10 @@ class Search {
       }
       const double s = 0.5 * (box.s0 + box.s1), t = 0.5 * (box.t0 + box.t1);
       const int depth = box.depth + 1;
-      stack.push_back({s, box.s1, t, box.t1, depth});
-      stack.push_back({s, box.s1, box.t0, t, depth});
-      stack.push_back({box.s0, s, t, box.t1, depth});
-      stack.push_back({box.s0, s, box.t0, t, depth});
+      queue.push_back({s, box.s1, t, box.t1, depth});
+      queue.push_back({s, box.s1, box.t0, t, depth});
+      queue.push_back({box.s0, s, t, box.t1, depth});
+      queue.push_back({box.s0, s, box.t0, t, depth});
     }
   }
 

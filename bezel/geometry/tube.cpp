@@ -86,8 +86,11 @@ void Resolution::add(const ResolvedRoot& root) {
   const auto inside = [](const ResolvedRoot& p, const ResolvedRoot& box) {
     return p.s >= box.s_lo && p.s <= box.s_hi && p.t >= box.t_lo && p.t <= box.t_hi;
   };
+  // A place known to the last bit, in the box of another root, is that root. Two roots may share
+  // their nearest doubles: then their signs differ.
   for (ResolvedRoot& known : roots)
-    if ((known.s == root.s && known.t == root.t) || (inside(known, root) && inside(root, known))) {
+    if (known.sign * root.sign >= 0 &&
+        (inside(root, known) || (!known.rough && inside(known, root)))) {
       if (root.s_end || root.t_end) known = root;
       return;
     }

@@ -23,6 +23,7 @@ struct ResolvedRoot {
   int sign;           ///< of cross(a', b') when the order is 1
   double turn;        ///< |cross(a', b')|, of the scaled curves
   bool s_end, t_end;  ///< s or t is exactly 0 or 1
+  bool rough;         ///< s and t are from the first stage
 };
 
 struct Undecided {
@@ -33,6 +34,7 @@ struct Undecided {
 struct Resolution {
   std::vector<ResolvedRoot> roots;
   std::vector<Undecided> undecided;
+  /// Unless it is there already. @param root  not rough
   void add(const ResolvedRoot& root);
 };
 
