@@ -41,8 +41,8 @@ struct Isolation {
 
 /// @param a, b   control points, 1 to 61 each, checked by the caller: finite, the largest
 ///               coordinate of both between 2^-300 and 2^300
-/// @param out    cleared first; its storage is reused. A root on the border of an open box of sign 0
-///               may be in `roots` as well
+/// @param out    cleared first; its storage is reused. A root on the border of an open box without
+///               a sign may be in `roots` as well
 /// @accuracy roots: largest seen 2.1 u condition at degrees 1 to 8
 /// @cost     0.27 us per pair of cubics with control points uniform in the unit square, 0.6 us at
 ///           degree 4; at most 2000 boxes and 24 halvings of a curve. No allocation up to degree 7
