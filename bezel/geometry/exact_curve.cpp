@@ -210,7 +210,7 @@ ContactOrder contact_order(const ExactContact& contact, int axis, int limit, dou
       divisor *= beta_squared;
     }
   }
-  const auto sum = [up](const std::vector<double>& c, double h, std::size_t from) {
+  const auto sum = [](const std::vector<double>& c, double h, std::size_t from) {
     double s = 0.0;
     for (std::size_t j = c.size(); j-- > from;) s = s * h + c[j];
     return s * up;

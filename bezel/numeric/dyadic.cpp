@@ -18,28 +18,31 @@ std::int64_t floor_divide_64(std::int64_t x) {
 }
 
 /// |a| + |b| shifted up by `shift` limbs, added in place; a has room.
-void add_to(std::vector<std::uint64_t>& a, const std::vector<std::uint64_t>& b, std::size_t shift) {
+void add_to(std::uint64_t* a, const detail::Limbs& b, std::size_t shift) {
+  const std::uint64_t* from = b.data();
   unsigned carry = 0;
   std::size_t i = 0;
   for (; i < b.size(); ++i) {
-    const Wide t = Wide{a[i + shift]} + b[i] + carry;
+    const Wide t = Wide{a[i + shift]} + from[i] + carry;
     a[i + shift] = static_cast<std::uint64_t>(t);
     carry = static_cast<unsigned>(t >> 64);
   }
   for (; carry != 0; ++i) carry = ++a[i + shift] == 0 ? 1 : 0;
 }
 
-/// a - b shifted up, in place; a is the larger.
-void subtract_from(std::vector<std::uint64_t>& a, const std::vector<std::uint64_t>& b,
-                   std::size_t shift) {
+/// a - b shifted up, in place; the borrow out of the top of a's `size` limbs.
+unsigned subtract_from(std::uint64_t* a, std::size_t size, const detail::Limbs& b,
+                       std::size_t shift) {
+  const std::uint64_t* from = b.data();
   unsigned borrow = 0;
   std::size_t i = 0;
   for (; i < b.size(); ++i) {
-    const Wide t = Wide{a[i + shift]} - b[i] - borrow;
+    const Wide t = Wide{a[i + shift]} - from[i] - borrow;
     a[i + shift] = static_cast<std::uint64_t>(t);
     borrow = static_cast<unsigned>(t >> 64) & 1U;
   }
-  for (; borrow != 0; ++i) borrow = a[i + shift]-- == 0 ? 1 : 0;
+  for (; borrow != 0 && i + shift < size; ++i) borrow = a[i + shift]-- == 0 ? 1 : 0;
+  return borrow;
 }
 
 }  // namespace
@@ -55,17 +58,18 @@ Dyadic::Dyadic(double x) {
   const std::int64_t e = exponent - 53;
   offset_ = floor_divide_64(e);
   const auto shift = static_cast<unsigned>(e - 64 * offset_);
-  limb_.push_back(mantissa << shift);
-  if (shift > 11) limb_.push_back(mantissa >> (64 - shift));
+  limb_.reset(2);
+  limb_[0] = mantissa << shift;
+  if (shift > 11) limb_[1] = mantissa >> (64 - shift);
   trim();
 }
 
 void Dyadic::trim() {
-  while (!limb_.empty() && limb_.back() == 0) limb_.pop_back();
-  const auto first =
-      std::find_if(limb_.begin(), limb_.end(), [](std::uint64_t x) { return x != 0; });
-  offset_ += first - limb_.begin();
-  limb_.erase(limb_.begin(), first);
+  std::size_t last = limb_.size(), first = 0;
+  while (last > 0 && limb_[last - 1] == 0) --last;
+  while (first < last && limb_[first] == 0) ++first;
+  limb_.keep(first, last);
+  offset_ += static_cast<std::int64_t>(first);
   if (limb_.empty()) {
     negative_ = false;
     offset_ = 0;
@@ -80,33 +84,34 @@ Dyadic Dyadic::operator-() const {
 
 Dyadic Dyadic::sum(const Dyadic& a, const Dyadic& b, bool b_negative) {
   if (b.limb_.empty()) return a;
-  const std::int64_t low = a.limb_.empty() ? b.offset_ : std::min(a.offset_, b.offset_);
+  if (a.limb_.empty()) {
+    Dyadic r = b;
+    r.negative_ = b_negative;
+    return r;
+  }
+  const std::int64_t low = std::min(a.offset_, b.offset_);
   const auto top_of = [](const Dyadic& x) {
     return x.offset_ + static_cast<std::int64_t>(x.limb_.size());
   };
-  const std::int64_t high = a.limb_.empty() ? top_of(b) : std::max(top_of(a), top_of(b));
+  const std::int64_t high = std::max(top_of(a), top_of(b));
   Dyadic r;
   r.offset_ = low;
-  r.limb_.assign(static_cast<std::size_t>(high - low) + 1, 0);
-  const auto shift_a = static_cast<std::size_t>(a.limb_.empty() ? 0 : a.offset_ - low);
-  const auto shift_b = static_cast<std::size_t>(b.offset_ - low);
-  std::copy(a.limb_.begin(), a.limb_.end(), r.limb_.begin() + static_cast<std::ptrdiff_t>(shift_a));
+  r.limb_.reset(static_cast<std::size_t>(high - low) + 1);
+  std::uint64_t* const sum = r.limb_.data();
+  std::copy_n(a.limb_.data(), a.limb_.size(), sum + (a.offset_ - low));
+  const auto shift = static_cast<std::size_t>(b.offset_ - low);
   r.negative_ = a.negative_;
-  if (a.negative_ == b_negative || a.limb_.empty()) {
+  if (a.negative_ == b_negative) {
+    add_to(sum, b.limb_, shift);
+  } else if (subtract_from(sum, r.limb_.size(), b.limb_, shift) != 0) {
+    // b's magnitude is larger: the complement of what is there.
     r.negative_ = b_negative;
-    add_to(r.limb_, b.limb_, shift_b);
-    r.trim();
-    return r;
+    unsigned carry = 1;
+    for (std::size_t i = 0; i < r.limb_.size(); ++i) {
+      sum[i] = ~sum[i] + carry;
+      carry = carry != 0 && sum[i] == 0 ? 1 : 0;
+    }
   }
-  // Opposite signs: which magnitude is larger shows in the borrow out of the top.
-  std::vector<std::uint64_t> wide_b(r.limb_.size(), 0);
-  std::copy(b.limb_.begin(), b.limb_.end(), wide_b.begin() + static_cast<std::ptrdiff_t>(shift_b));
-  if (std::lexicographical_compare(r.limb_.rbegin(), r.limb_.rend(), wide_b.rbegin(),
-                                   wide_b.rend())) {
-    r.limb_.swap(wide_b);
-    r.negative_ = b_negative;
-  }
-  subtract_from(r.limb_, wide_b, 0);
   r.trim();
   return r;
 }
@@ -116,34 +121,41 @@ Dyadic operator*(const Dyadic& a, const Dyadic& b) {
   if (a.limb_.empty() || b.limb_.empty()) return r;
   r.negative_ = a.negative_ != b.negative_;
   r.offset_ = a.offset_ + b.offset_;
-  r.limb_.assign(a.limb_.size() + b.limb_.size(), 0);
+  r.limb_.reset(a.limb_.size() + b.limb_.size());
+  std::uint64_t* const out = r.limb_.data();
+  const std::uint64_t *const p = a.limb_.data(), *const q = b.limb_.data();
   for (std::size_t i = 0; i < b.limb_.size(); ++i) {
     std::uint64_t carry = 0;
     for (std::size_t j = 0; j < a.limb_.size(); ++j) {
-      const Wide t = Wide{a.limb_[j]} * b.limb_[i] + r.limb_[i + j] + carry;
-      r.limb_[i + j] = static_cast<std::uint64_t>(t);
+      const Wide t = Wide{p[j]} * q[i] + out[i + j] + carry;
+      out[i + j] = static_cast<std::uint64_t>(t);
       carry = static_cast<std::uint64_t>(t >> 64);
     }
-    r.limb_[i + a.limb_.size()] = carry;
+    out[i + a.limb_.size()] = carry;
   }
   r.trim();
   return r;
 }
 
 Dyadic Dyadic::scaled(std::int64_t bits) const {
-  Dyadic r = *this;
-  if (limb_.empty()) return r;
+  if (limb_.empty()) return *this;
   const std::int64_t whole = floor_divide_64(bits);
-  r.offset_ += whole;
   const auto shift = static_cast<unsigned>(bits - 64 * whole);
-  if (shift == 0) return r;
-  std::uint64_t carry = 0;
-  for (std::uint64_t& x : r.limb_) {
-    const std::uint64_t next = x >> (64 - shift);
-    x = (x << shift) | carry;
-    carry = next;
+  if (shift == 0) {
+    Dyadic r = *this;
+    r.offset_ += whole;
+    return r;
   }
-  if (carry != 0) r.limb_.push_back(carry);
+  Dyadic r;
+  r.negative_ = negative_;
+  r.offset_ = offset_ + whole;
+  r.limb_.reset(limb_.size() + 1);
+  std::uint64_t carry = 0;
+  for (std::size_t i = 0; i < limb_.size(); ++i) {
+    r.limb_[i] = (limb_[i] << shift) | carry;
+    carry = limb_[i] >> (64 - shift);
+  }
+  r.limb_[limb_.size()] = carry;
   r.trim();
   return r;
 }
@@ -164,19 +176,22 @@ double Dyadic::to_double() const {
   const std::int64_t last = std::max<std::int64_t>(top - 52, -1074);  // weight of the last bit kept
   if (top < last - 1) return sign * 0.0;
   const std::int64_t first = 64 * offset_;
-  const auto bit = [&](std::int64_t weight) {
-    const std::int64_t at = weight - first;
-    if (at < 0) return false;
-    const auto limb = static_cast<std::size_t>(at >> 6);
-    return limb < limb_.size() && ((limb_[limb] >> (at & 63)) & 1U) != 0;
+  const auto limb = [&](std::int64_t i) {
+    return i >= 0 && i < static_cast<std::int64_t>(limb_.size())
+               ? limb_[static_cast<std::size_t>(i)]
+               : 0U;
   };
-  std::uint64_t mantissa = 0;
-  for (std::int64_t weight = top; weight >= last; --weight)
-    mantissa = (mantissa << 1) | (bit(weight) ? 1U : 0U);
-  if (bit(last - 1)) {
+  // The 64 bits from a weight on.
+  const auto window = [&](std::int64_t weight) {
+    const std::int64_t at = weight - first, i = floor_divide_64(at);
+    const auto shift = static_cast<unsigned>(at - 64 * i);
+    return shift == 0 ? limb(i) : (limb(i) >> shift) | (limb(i + 1) << (64 - shift));
+  };
+  std::uint64_t mantissa = window(last);  // there is nothing above `top`
+  if ((window(last - 1) & 1U) != 0) {
     // Trailing limbs are never 0: anything below the half is a one somewhere, and the lowest limb
     // holds the lowest.
-    const std::int64_t lowest = first + std::countr_zero(limb_.front());
+    const std::int64_t lowest = first + std::countr_zero(limb_[0]);
     if (lowest < last - 1 || (mantissa & 1U) != 0) ++mantissa;
   }
   return sign * std::ldexp(static_cast<double>(mantissa), static_cast<int>(last));
