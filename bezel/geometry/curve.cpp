@@ -66,6 +66,7 @@ CurveCache cache_curve(std::span<const Vec2> control) {
   CurveCache cache{};
   cache.control = control;
   cache.box = geometry_kernel::control_box(d, control.data());
+  cache.magnitude = geometry_kernel::largest_coordinate(cache.box);
   cache.chord = control.back() - control.front();
   cache.chord_length = norm(cache.chord);
   for (int i = 1; i < d; ++i) {
@@ -73,21 +74,7 @@ CurveCache cache_curve(std::span<const Vec2> control) {
     cache.band_lo = std::min(cache.band_lo, c);
     cache.band_hi = std::max(cache.band_hi, c);
   }
-  cache.magnitude = std::max(std::max(std::fabs(cache.box.lo.x()), std::fabs(cache.box.hi.x())),
-                             std::max(std::fabs(cache.box.lo.y()), std::fabs(cache.box.hi.y())));
   return cache;
-}
-
-CurveIntersections intersect(std::span<const Vec2> a, std::span<const Vec2> b,
-                             const IntersectOptions& options) {
-  CurveIntersections out;
-  intersect(cache_curve(a), cache_curve(b), options, out);
-  return out;
-}
-
-void intersect(std::span<const Vec2> a, std::span<const Vec2> b, const IntersectOptions& options,
-               CurveIntersections& out) {
-  intersect(cache_curve(a), cache_curve(b), options, out);
 }
 
 }  // namespace bezel

@@ -105,8 +105,8 @@ struct IntersectOptions {
 ///           allocation; each nearly parallel or touching place, and each end point on the other
 ///           curve that is no common end, 20 to 300 us more, in exact numbers. Quadratic mesh edges
 ///           with tol > 0: 0.05 us when apart, 0.2 us when crossing or identical. Bounded: 2000
-///           boxes in doubles, 20000 / (degrees' product) polynomials in exact numbers; up to 2 s
-///           for coordinates whose exponents are 2000 apart
+///           boxes in doubles, 60000 / (product of the degrees) polynomials in exact numbers; up to
+///           2 s for coordinates whose exponents are 2000 apart
 /// @limits   tol = 0 leaves unresolved: contact of order two or more at parameters that are no
 ///           fractions (both at once) of some 100 bits, in boxes below 2^-50; parts that coincide
 ///           under a change of parameter that is not affine, unless on a straight line; a cusp of

@@ -2,6 +2,8 @@
 // Raw kernels on a plane curve's control points: unchecked, on the stack, for the inner loops of
 // geometry.
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <new>
 
@@ -105,6 +107,11 @@ inline Box2 control_box(int degree, const Vec2* b) {
   box.lo = Vec2{{lo_x, lo_y}};
   box.hi = Vec2{{hi_x, hi_y}};
   return box;
+}
+
+inline double largest_coordinate(const Box2& box) {
+  return std::max(std::max(std::fabs(box.lo.x()), std::fabs(box.hi.x())),
+                  std::max(std::fabs(box.lo.y()), std::fabs(box.hi.y())));
 }
 
 }  // namespace bezel::geometry_kernel

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "bezel/base/error.hpp"
+#include "bezel/geometry/curve_check.hpp"
+#include "bezel/geometry/curve_kernel.hpp"
 #include "bezel/geometry/intersect_exact.hpp"
 #include "bezel/geometry/intersect_search.hpp"
 
@@ -17,7 +19,7 @@ namespace {
 /// The control points of `other` all lie on one side of `curve`'s fat line, further than margin.
 bool outside_fat_line(const CurveCache& curve, const CurveCache& other, double margin) {
   const Vec2 origin = curve.control.front();
-  const double slack = margin * curve.chord_length + 0x1p-1060;  // and products that vanish
+  const double slack = margin * curve.chord_length;
   const double lo = curve.band_lo - slack, hi = curve.band_hi + slack;
   bool below = true, above = true;
   for (const Vec2& p : other.control) {
@@ -27,6 +29,16 @@ bool outside_fat_line(const CurveCache& curve, const CurveCache& other, double m
     if (!below && !above) return false;
   }
   return true;
+}
+
+/// All that the exact method wants of a curve.
+CurveCache cache_box(std::span<const Vec2> control) {
+  CurveCache cache{};
+  const int d = geometry_kernel::checked_degree(control);
+  cache.control = control;
+  cache.box = geometry_kernel::control_box(d, control.data());
+  cache.magnitude = geometry_kernel::largest_coordinate(cache.box);
+  return cache;
 }
 
 /// With a distance, of curves whose products would overflow or vanish: scaled by a power of two.
@@ -61,22 +73,38 @@ void intersect(const CurveCache& a, const CurveCache& b, const IntersectOptions&
   const double tol = options.coincidence_distance;
   if (!(tol >= 0) || !std::isfinite(tol))
     throw InputError("the coincidence distance must be finite and not negative");
+  if (tol == 0.0) {
+    if (a.box.overlaps(b.box)) geometry_kernel::intersect_exactly(a, b, out);
+    return;
+  }
   const double magnitude = std::max(a.magnitude, b.magnitude);
-  if (tol > 0.0 && magnitude > 0.0 && !(magnitude > 0x1p-300 && magnitude < 0x1p300)) {
+  if (magnitude > 0.0 && !(magnitude > 0x1p-300 && magnitude < 0x1p300)) {
     intersect_scaled(a, b, tol, out);
     return;
   }
-  const double margin = tol > 0.0 ? std::max(tol, 0x1p-51 * magnitude) : 0.0;
+  const double margin = std::max(tol, 0x1p-51 * magnitude);
   if (a.box.lo.x() > b.box.hi.x() + margin || b.box.lo.x() > a.box.hi.x() + margin ||
       a.box.lo.y() > b.box.hi.y() + margin || b.box.lo.y() > a.box.hi.y() + margin)
     return;
   // The fat line's own rounding: products of differences, relative to the chord.
-  const double slack = margin + 0x1p-49 * (a.box.diameter() + b.box.diameter());
+  const double slack = margin + 0x1p-50 * std::max(a.box.diameter(), b.box.diameter());
   if (outside_fat_line(a, b, slack) || outside_fat_line(b, a, slack)) return;
-  if (tol == 0.0)
-    geometry_kernel::intersect_exactly(a, b, out);
+  IntersectSearch(a, b, options, out).run();
+}
+
+void intersect(std::span<const Vec2> a, std::span<const Vec2> b, const IntersectOptions& options,
+               CurveIntersections& out) {
+  if (options.coincidence_distance == 0.0)
+    intersect(cache_box(a), cache_box(b), options, out);
   else
-    IntersectSearch(a, b, options, out).run();
+    intersect(cache_curve(a), cache_curve(b), options, out);
+}
+
+CurveIntersections intersect(std::span<const Vec2> a, std::span<const Vec2> b,
+                             const IntersectOptions& options) {
+  CurveIntersections out;
+  intersect(a, b, options, out);
+  return out;
 }
 
 }  // namespace bezel

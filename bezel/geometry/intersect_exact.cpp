@@ -153,8 +153,8 @@ class Search {
             smallest = std::min(smallest, std::ilogb(p[x]));
           }
     const double spread = std::max(0, largest - smallest - 40) / 64.0;
-    const double nodes = 20000.0 / (degree(a_) * degree(b_) * (1.0 + spread * spread));
-    return std::max(64, static_cast<int>(nodes));
+    const double nodes = 60000.0 / (degree(a_) * degree(b_) * (1.0 + spread * spread));
+    return std::max(256, static_cast<int>(nodes));
   }
 
   Crossing crossing(const IsolatedRoot& r) const {

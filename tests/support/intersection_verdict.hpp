@@ -107,7 +107,8 @@ inline Verdict judge(const CurvePair& pair, const CommonParts& truth,
   std::vector<Claim> claims;
   for (const auto& c : found.crossings) claims.push_back({c.s, c.t, &c, nullptr});
   for (const auto& c : found.tangencies) claims.push_back({c.s, c.t, nullptr, &c});
-  std::vector<std::tuple<double, std::size_t, std::size_t>> distances;
+  // Two roots may share their nearest doubles: then signs tell them apart.
+  std::vector<std::tuple<double, bool, std::size_t, std::size_t>> distances;
   for (std::size_t i = 0; i < claims.size(); ++i)
     for (std::size_t j = 0; j < truth.points.size(); ++j) {
       const CommonPoint& p = truth.points[j];
@@ -115,11 +116,12 @@ inline Verdict judge(const CurvePair& pair, const CommonParts& truth,
       const mpq_class dt = abs(mpq_class(claims[i].t) - (p.t_lo + p.t_hi) / 2);
       const double distance = std::max(ds.get_d(), dt.get_d());
       if (distance <= (p.multiplicity == 1 && p.smooth ? 0x1p-20 : 0x1p-10))
-        distances.emplace_back(distance, i, j);
+        distances.emplace_back(
+            distance, claims[i].crossing != nullptr && claims[i].crossing->sign != p.sign, i, j);
     }
   std::sort(distances.begin(), distances.end());
   std::vector<bool> used(claims.size(), false), seen(truth.points.size(), false);
-  for (const auto& [distance, i, j] : distances) {
+  for (const auto& [distance, other_sign, i, j] : distances) {
     if (used[i] || seen[j]) continue;
     used[i] = seen[j] = true;
     const CommonPoint& p = truth.points[j];
