@@ -107,12 +107,12 @@ struct IntersectOptions {
 ///           with tol > 0: 0.05 us when apart, 0.2 us when crossing or identical. Bounded: 2000
 ///           boxes in doubles, 60000 / (product of the degrees) polynomials in exact numbers; up to
 ///           2 s for coordinates whose exponents are 2000 apart
-/// @limits   tol = 0 leaves unresolved: contact of order two or more at parameters that are no
-///           fractions (both at once) of some 100 bits, in boxes below 2^-50; parts that coincide
-///           under a change of parameter that is not affine, unless on a straight line; a cusp of
-///           one on a cusp of the other, or on an end of an overlap when it is no fraction.
-///           tol > 0: extents between 2^-480 and 2^480; crossings between nearly parallel pieces
-///           come from an interpolated distance, not `certified`
+/// @limits   tol = 0 leaves unresolved: contact of order two or more where a parameter is no
+///           fraction of some 100 bits (on a straight curve it need not be), in boxes below 2^-50;
+///           parts that coincide under a change of parameter that is not affine, unless on a
+///           straight line; a cusp of one on a cusp of the other, or on a part that coincides when
+///           its parameter is no fraction. tol > 0: crossings between nearly parallel pieces come
+///           from an interpolated distance, not `certified`
 /// @source   docs/methods/geometry.md; [hermes2018, ch. 2] posed the problem
 CurveIntersections intersect(std::span<const Vec2> a, std::span<const Vec2> b,
                              const IntersectOptions& options = {});

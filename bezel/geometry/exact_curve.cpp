@@ -63,6 +63,11 @@ ExactCurve::ExactCurve(std::span<const Vec2> control, std::int64_t exponent) {
     c_[0].pop_back();
     c_[1].pop_back();
   }
+  const std::size_t n = c_[0].size() - 1;
+  bool straight = n > 0;
+  for (std::size_t k = 1; k < n && straight; ++k)
+    straight = c_[0][k] * c_[1][n] == c_[1][k] * c_[0][n];
+  if (straight) direction_ = ExactPoint{c_[0][n], c_[1][n]};
 }
 
 ExactPoint ExactCurve::operator()(const Dyadic& s) const {

@@ -35,9 +35,12 @@ class ExactCurve {
   /// curve(at + h) times at.den^degree.
   ExactTaylor taylor(const Ratio& at) const;
   const ExactTaylor& monomial() const { return c_; }
+  /// Of a curve on a straight line, along it; nothing for others and for points.
+  const std::optional<ExactPoint>& direction() const { return direction_; }
 
  private:
   ExactTaylor c_;
+  std::optional<ExactPoint> direction_;
 };
 
 /// A common point of two curves at rational parameters, verified.

@@ -398,6 +398,12 @@ class Search {
         near_diagonal = where == Diagonal::unclear;
       }
       if (!near_diagonal) {
+        // A straight curve is the better graph.
+        const bool a_first = exact_a_->direction() && !exact_b_->direction();
+        if (a_first && on_a.graph(box.s0, box.s1)) {
+          on_a.run(box.t0, box.t1);
+          continue;
+        }
         if (on_b.graph(box.t0, box.t1)) {
           on_b.run(box.s0, box.s1);
           continue;

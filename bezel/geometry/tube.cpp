@@ -80,6 +80,11 @@ std::optional<Ratio> candidate(const Dyadic& lo, const Dyadic& hi) {
   return simplest_between(lo, hi, std::clamp(bits, 2, 200));
 }
 
+/// Within 2^-140 or so.
+Dyadic near(const Ratio& x) {
+  return floor_quotient(x.num.scaled(140), x.den).scaled(-140);
+}
+
 }  // namespace
 
 void Resolution::add(const ResolvedRoot& root) {
@@ -305,7 +310,9 @@ void TubeSearch::visit(const Node& node) {
     // Nothing gained; a place of contact explains that.
     const Dyadic h(node.h), lo = node.centre - h, hi = node.centre + h;
     const double reach = majorant(model.phi, node.h, 1) + model.width;
-    if (try_contact(node, lo, hi, model.t - Dyadic(reach), model.t + Dyadic(reach), false)) return;
+    if (try_contact(node, lo, hi, model.t - Dyadic(reach), model.t + Dyadic(reach), false) ||
+        try_straight(node, lo, hi))
+      return;
     halve();
     return;
   }
@@ -363,7 +370,9 @@ void TubeSearch::examine(const Node& node, const Model& model, const Suspect& su
   // Not told apart: a contact, or something to look at more closely.
   const double reach = derivative_majorant(model.phi, node.h) * node.h * radius * up + model.width;
   const Dyadic t = model.t + Dyadic(value(model.phi, node.h * middle));
-  if (try_contact(node, s_lo, s_hi, t - Dyadic(reach), t + Dyadic(reach), false)) return;
+  if (try_contact(node, s_lo, s_hi, t - Dyadic(reach), t + Dyadic(reach), false) ||
+      try_straight(node, s_lo, s_hi))
+    return;
   const double h = 1.25 * radius * node.h;
   Node closer = node;
   closer.centre = node.centre + Dyadic(node.h * middle);
@@ -374,6 +383,51 @@ void TubeSearch::examine(const Node& node, const Model& model, const Suspect& su
     return;
   }
   stack_.push_back(std::move(closer));
+}
+
+/// Contact with a straight curve: b's parameter need not be a fraction.
+bool TubeSearch::try_straight(const Node& node, const Dyadic& s_lo, const Dyadic& s_hi) {
+  if (!b_.direction()) return false;
+  const auto s = candidate(s_lo, s_hi);
+  if (!s) return false;
+  // The distance from the line, times a constant, in powers of s - s*.
+  const ExactPoint& along = *b_.direction();
+  const ExactTaylor a = a_.taylor(*s);
+  Dyadic scale = 1.0;
+  for (int i = 0; i < a_.degree(); ++i) scale *= s->den;
+  Polynomial height;
+  for (std::size_t k = 0; k < a[0].size(); ++k)
+    height.push_back(along[0] * a[1][k] - along[1] * a[0][k]);
+  height[0] -= scale * (along[0] * b_.monomial()[1][0] - along[1] * b_.monomial()[0][0]);
+  std::size_t order = 0;
+  while (order < height.size() && height[order].sign() == 0) ++order;
+  if (order < 2 || order == height.size()) return false;
+  double radius = 0.25;
+  for (;; radius *= 0.5) {
+    if (radius < 0x1p-42) return false;
+    double rest = 0.0;
+    for (std::size_t k = height.size(); k-- > order + 1;)
+      rest = (rest + std::fabs(quotient(height[k], height[order])) * up) * radius;
+    if (rest * up < 1.0) break;
+  }
+  const Dyadic place = near(*s);
+  const Dyadic t = find_opposite(a_(place)[at(axis_)], node.opposite, 0x1p-120);
+  if (t.sign() >= 0 && !(Dyadic(1.0) < t) && s->num.sign() >= 0 && compare(*s, {1.0}) <= 0) {
+    ResolvedRoot root{};
+    root.s = to_double(*s);
+    root.t = t.to_double();
+    root.order = static_cast<int>(order);
+    root.s_end = s->num.sign() == 0 || compare(*s, {1.0}) == 0;
+    root.s_lo = std::max(s0_, root.s - radius);
+    root.s_hi = std::min(s1_, root.s + radius);
+    root.t_lo = t_centre_ - t_radius_;
+    root.t_hi = t_centre_ + t_radius_;
+    emit(root);
+  }
+  const Dyadic reach(radius * 0.999);
+  push_interval(s_lo, place - reach, node);
+  push_interval(place + reach, s_hi, node);
+  return true;
 }
 
 bool TubeSearch::try_contact(const Node& node, const Dyadic& s_lo, const Dyadic& s_hi,

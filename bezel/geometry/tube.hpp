@@ -80,6 +80,7 @@ class TubeSearch {
   void examine(const Node& node, const Model& model, const Suspect& suspect);
   bool try_contact(const Node& node, const Dyadic& s_lo, const Dyadic& s_hi, const Dyadic& t_lo,
                    const Dyadic& t_hi, bool certified);
+  bool try_straight(const Node& node, const Dyadic& s_lo, const Dyadic& s_hi);
   void finish_root(const Node& node, const Dyadic& s, double s_error, const Dyadic& t,
                    double t_error, int sign, double turn);
   void push_interval(const Dyadic& lo, const Dyadic& hi, const Node& from);

@@ -295,6 +295,26 @@ TEST(RandomPairs, Cubics) {
         {}, 0, 0);
 }
 
+/// Small integers meet exactly, touch, overlap, turn back and coincide all the time.
+TEST(RandomPairs, OnALattice) {
+  const auto curve = [](bezel::RandomStream& random, std::uint64_t degree) {
+    support::CurvePoints out;
+    for (std::uint64_t i = 0; i <= degree; ++i) {
+      const double x = static_cast<double>(random.below(7)) - 3;
+      const double y = static_cast<double>(random.below(7)) - 3;
+      out.push_back(bezel::Vec2{{x, y}});
+    }
+    return out;
+  };
+  Tally tally = run_random("lattice", 4000, false, [&](bezel::RandomStream& random, int) {
+    const auto a = curve(random, 1 + random.below(4)), b = curve(random, 1 + random.below(3));
+    return CurvePair{"", a, b};
+  });
+  EXPECT_LE(tally.undecided, 10);  // by the elimination: multiple points on multiple points
+  tally.undecided = 0;
+  check("lattice", tally, {}, 0, 0);
+}
+
 TEST(RandomPairs, DegreesOneToTen) {
   constexpr int counts[] = {0, 100, 100, 100, 100, 60, 10, 5, 2, 1, 1};
   const auto draw = [](int m, int n) {

@@ -176,6 +176,26 @@ TEST(IntersectTest, ACuspOnTheOtherCurve) {
   EXPECT_EQ(along.tangencies[0].order, 3);
 }
 
+TEST(IntersectTest, TouchingAStraightCurveWithAnUnevenParameter) {
+  // The line x = -1 is run through twice; the parabola touches it at (-1, 1.25), where the line's
+  // parameters are irrational: 8 t - 8 t^2 = 1.25.
+  const Points parabola{{{-3, -2}}, {{1, 4}}, {{-3, -1}}}, line{{{-1, 0}}, {{-1, 4}}, {{-1, 0}}};
+  for (const bool exchange : {false, true}) {
+    const auto found = exchange ? intersect(line, parabola) : intersect(parabola, line);
+    ASSERT_EQ(found.tangencies.size(), 2u);
+    EXPECT_TRUE(found.crossings.empty() && found.overlaps.empty() && found.unresolved.empty());
+    double sum = 0;
+    for (const auto& c : found.tangencies) {
+      EXPECT_EQ(c.order, 2);
+      EXPECT_EQ(exchange ? c.t : c.s, 0.5);
+      const double t = exchange ? c.s : c.t;
+      EXPECT_NEAR(8 * t * (1 - t), 1.25, 1e-14);
+      sum += t;
+    }
+    EXPECT_NEAR(sum, 1.0, 1e-15);
+  }
+}
+
 TEST(IntersectTest, CurvesOnOneLine) {
   // s^2 (2, 1) has the line's points at other parameters; the last curve turns back at 3/4.
   const Points line{{{0, 0}}, {{2, 1}}}, slow{{{0, 0}}, {{0, 0}}, {{2, 1}}};
