@@ -63,6 +63,8 @@ class TubeSearch {
   struct Suspect {
     double lo, hi;
   };
+  /// Intervals are not made smaller than this: beyond, points are told apart only exactly.
+  static constexpr double smallest_radius = 0x1p-200;
   struct Model {
     Dyadic t;                     // b's parameter opposite the centre
     std::vector<double> phi;      // b's parameter is t + phi(h) + w
@@ -78,14 +80,16 @@ class TubeSearch {
   void search(const std::vector<double>& e, double centre, double radius, int level,
               const Model& model, std::vector<Suspect>& out) const;
   void examine(const Node& node, const Model& model, const Suspect& suspect);
+  void push_interval(const Dyadic& lo, const Dyadic& hi, const Node& from);
+  void leave(const Node& node, const char* reason);
+  void emit(ResolvedRoot root);
+
+  // At places known exactly (tube_contacts.cpp).
   bool try_contact(const Node& node, const Dyadic& s_lo, const Dyadic& s_hi, const Dyadic& t_lo,
                    const Dyadic& t_hi, bool certified);
   bool try_straight(const Node& node, const Dyadic& s_lo, const Dyadic& s_hi);
   void finish_root(const Node& node, const Dyadic& s, double s_error, const Dyadic& t,
                    double t_error, int sign, double turn);
-  void push_interval(const Dyadic& lo, const Dyadic& hi, const Node& from);
-  void leave(const Node& node, const char* reason);
-  void emit(ResolvedRoot root);
 
   const ExactCurve &a_, &b_;
   bool swapped_;
