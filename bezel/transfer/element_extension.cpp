@@ -21,11 +21,9 @@ void ElementTransfer::add_extension(const Group& g, std::int32_t t, std::span<co
     if (segment.source.edge < 0) continue;
     const auto& sides = donor_.edge_sides[static_cast<std::size_t>(segment.source.edge)];
     const std::int32_t d = sides[0] != exterior ? sides[0] : sides[1];
-    Neighbour n{d, {}, {}};
-    Vec2 unused;
-    curve_point(donor_.edge(segment.source.edge), segment.source.from, n.a, unused);
-    curve_point(donor_.edge(segment.source.edge), segment.source.to, n.b, unused);
-    neighbours.push_back(n);
+    const auto edge = donor_.edge(segment.source.edge);
+    neighbours.push_back({d, edge_point(edge, segment.source.from).value,
+                          edge_point(edge, segment.source.to).value});
   }
   if (neighbours.empty()) neighbours.push_back({search_.nearest(centre), centre, centre});
   const auto nearest = [&](const Vec2& x) {

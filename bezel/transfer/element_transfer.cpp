@@ -77,8 +77,9 @@ void ElementTransfer::boundary_nodes(std::span<const Segment> run, int degree) {
     const double step = signed_step(part);
     for (std::size_t i = 0; i < line.node.size(); ++i) {
       Node node;
-      curve_point(control, part.from + step * line.node[i], node.x, node.dx);
-      node.dx *= step * line.weight[i];
+      const auto at = edge_point(control, part.from + step * line.node[i]);
+      node.x = at.value;
+      node.dx = at.derivative * (step * line.weight[i]);
       nodes_.push_back(node);
     }
   }
@@ -123,7 +124,9 @@ void ElementTransfer::reference_nodes(const OverlayMesh& mesh, std::int32_t elem
     bool warm = false;
     for (std::size_t i = 0; i < line.node.size(); ++i) {
       Node node;
-      curve_point(control, part.from + step * line.node[i], node.x, node.dx);
+      const auto at = edge_point(control, part.from + step * line.node[i]);
+      node.x = at.value;
+      node.dx = at.derivative;
       warm = invert_map(mesh.degree, mesh.element(element), node.x, lambda, warm);
       node.q = {lambda[1], lambda[2]};
       const MapPoint map = map_point(mesh, element, node.q);

@@ -148,12 +148,8 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
     intersect(target_.edge_cache[static_cast<std::size_t>(edge)],
               donor_.edge_cache[static_cast<std::size_t>(e)], options, found_);
     for (const Crossing& c : found_.crossings) {
-      Vec2 pa;
-      Vec2 da;
-      Vec2 pb;
-      Vec2 db;
-      curve_point(curve, c.s, pa, da);
-      curve_point(donor_curve, c.t, pb, db);
+      const auto [pa, da] = edge_point(curve, c.s);
+      const auto [pb, db] = edge_point(donor_curve, c.t);
       const double sine = cross(da, db);
       const double reliable = reliable_sine * norm(da) * norm(db);
       const std::int8_t sign = sine > reliable    ? std::int8_t{1}

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "bezel/geometry/curve.hpp"
+#include "bezel/geometry/curve_kernel.hpp"
 #include "bezel/transfer/overlay_mesh.hpp"
 
 namespace bezel::detail {
@@ -112,38 +113,16 @@ class ElementOverlay {
   CurveIntersections found_;
 };
 
-/// Point of a Bezier curve and its derivative; 2 to 11 control points, unchecked.
-inline void curve_point(std::span<const Vec2> control, double t, Vec2& point, Vec2& derivative) {
-  const std::size_t n = control.size();
-  const double s = 1.0 - t;
-  if (n == 2) {
-    derivative = control[1] - control[0];
-    point = control[0] * s + control[1] * t;
-    return;
-  }
-  if (n == 3) {
-    const Vec2 a = control[0] * s + control[1] * t;
-    const Vec2 b = control[1] * s + control[2] * t;
-    derivative = (b - a) * 2.0;
-    point = a * s + b * t;
-    return;
-  }
-  std::array<Vec2, TriangleMesh::max_degree + 1> b;
-  for (std::size_t i = 0; i < n; ++i) b[i] = control[i];
-  for (std::size_t k = n - 1; k > 1; --k) {
-    for (std::size_t i = 0; i < k; ++i) b[i] = b[i] * s + b[i + 1] * t;
-  }
-  derivative = (b[1] - b[0]) * static_cast<double>(n - 1);
-  point = b[0] * s + b[1] * t;
+/// Point of an edge and its derivative, unchecked.
+inline geometry_kernel::CurvePoint edge_point(std::span<const Vec2> control, double t) {
+  return geometry_kernel::curve_point(static_cast<int>(control.size()) - 1, control.data(), t);
 }
 
+/// The same with the ends' own bits.
 inline Vec2 curve_point(std::span<const Vec2> control, double t) {
   if (t == 0.0) return control.front();
   if (t == 1.0) return control.back();
-  Vec2 point;
-  Vec2 unused;
-  curve_point(control, t, point, unused);
-  return point;
+  return edge_point(control, t).value;
 }
 
 }  // namespace bezel::detail

@@ -89,9 +89,7 @@ TEST(CurvePoint, EqualsTheDefinition) {
     std::vector<Vec2> c(n);
     for (Vec2& p : c) p = Vec2{{random.uniform(-1, 1), random.uniform(-1, 1)}};
     const double t = random.uniform();
-    Vec2 p;
-    Vec2 d;
-    curve_point(c, t, p, d);
+    const auto [p, d] = edge_point(c, t);
     const Vec2 q = bernstein::evaluate<Vec2>(c, t);
     const Vec2 e = bernstein::evaluate_derivative<Vec2>(c, t);
     EXPECT_LE(norm(p - q), 1e-15);
