@@ -101,7 +101,7 @@ struct IntersectOptions {
 ///           tol > 0: crossings within 4 u condition up to 2^20, then compensated; ends of an
 ///           overlap inside the curves are where the distance passes tol, known to tol / 128 from
 ///           a measured (not proven) interpolation error
-/// @cost     means on one core: random quadratics 0.2 us, cubics 0.3 us, quintics 0.9 us, no
+/// @cost     means on one core: random quadratics 0.3 us, cubics 0.4 us, quintics 1.5 us, no
 ///           allocation; each nearly parallel or touching place, and each end point on the other
 ///           curve that is no common end, 20 to 300 us more, in exact numbers. Quadratic mesh edges
 ///           with tol > 0: 0.05 us when apart, 0.2 us when crossing or identical. Bounded: 2000

@@ -44,7 +44,7 @@ struct Isolation {
 /// @param out    cleared first; its storage is reused. A root on the border of an open box without
 ///               a sign may be in `roots` as well
 /// @accuracy roots: largest seen 2.1 u condition at degrees 1 to 8
-/// @cost     0.27 us per pair of cubics with control points uniform in the unit square, 0.6 us at
+/// @cost     0.3 us per pair of cubics with control points uniform in the unit square, 0.6 us at
 ///           degree 4; at most 2000 boxes and 24 halvings of a curve. No allocation up to degree 7
 /// @limits   nearly parallel pieces and cusps are left open, curves that coincide as some 50 boxes;
 ///           from degree 20 or so on, so are roots whose parameter is within rounding of a multiple
