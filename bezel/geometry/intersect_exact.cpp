@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "bezel/geometry/curve_incidence.hpp"
 #include "bezel/geometry/curve_kernel.hpp"
 #include "bezel/geometry/intersect_collinear.hpp"
+#include "bezel/geometry/isolate.hpp"
 
 namespace bezel::geometry_kernel {
 namespace {
@@ -217,13 +221,13 @@ class Search {
 
   /// Boxes that touch become one where one of the curves is a graph over the whole.
   void join(std::vector<Box>& boxes) {
+    TubeSearch on_b(*exact_a_, *exact_b_, false, nodes_, resolution_);
     for (std::size_t i = 0; i < boxes.size(); ++i)
       for (std::size_t k = 0; k < boxes.size(); ++k) {
         const Box &p = boxes[i], &q = boxes[k];
         if (i == k || p.s0 > q.s1 || q.s0 > p.s1 || p.t0 > q.t1 || q.t0 > p.t1) continue;
         const Box whole{std::min(p.s0, q.s0), std::max(p.s1, q.s1), std::min(p.t0, q.t0),
                         std::max(p.t1, q.t1), 0};
-        TubeSearch on_b(*exact_a_, *exact_b_, false, nodes_, resolution_);
         if (!on_b.graph(whole.t0, whole.t1)) continue;
         boxes[i] = whole;
         boxes.erase(boxes.begin() + static_cast<std::ptrdiff_t>(k));

@@ -2,11 +2,7 @@
 // Curve-curve intersection without tolerance: every verdict is a proof about the control points as
 // given. Internal.
 
-#include <cstdint>
-#include <optional>
-
 #include "bezel/geometry/curve.hpp"
-#include "bezel/geometry/isolate.hpp"
 #include "bezel/geometry/tube.hpp"
 
 namespace bezel::geometry_kernel {

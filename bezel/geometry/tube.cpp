@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 
 namespace bezel::geometry_kernel {
@@ -397,7 +396,7 @@ void TubeSearch::emit(ResolvedRoot root) {
 
 void TubeSearch::leave(const Node& node, const char* reason) {
   const double s = node.centre.to_double();
-  const double width = derivative_majorant({0.0, speed_ / slowest_}, 1.0) * node.h;
+  const double width = speed_ / slowest_ * up * node.h;
   const double t = node.opposite.to_double();
   Undecided box{std::max(s0_, s - node.h), std::min(s1_, s + node.h), std::max(t0_, t - width),
                 std::min(t1_, t + width), reason};
