@@ -126,6 +126,10 @@ struct CurveCache {
   double chord_length;      ///< its length
   double band_lo, band_hi;  ///< range of cross(chord, c_i - c_0) over the control points
   double magnitude;         ///< largest |coordinate|
+  double diameter;          ///< of the box
+  /// Range of the tangent of the angle from the chord to the derivative, for parameters from -1/4
+  /// to 5/4; infinite where it reaches 90 degrees or the chord is a point.
+  double slope_lo, slope_hi;
 };
 /// @throws   InputError when there are no control points, more than 61, or one is not finite
 CurveCache cache_curve(std::span<const Vec2> control);
