@@ -34,7 +34,8 @@ ElementOverlay::ElementOverlay(const OverlayMesh& donor, const OverlayMesh& targ
       vertex_place_(target.mesh->node_count()),
       walk_stamp_(donor.edge_box.size(), 0),
       inside_stamp_(donor.mesh->node_count(), 0),
-      edge_stamp_(donor.edge_box.size(), 0) {}
+      edge_stamp_(donor.edge_box.size(), 0),
+      group_(donor.element_count() + 1) {}
 
 void ElementOverlay::begin_chunk() {
   ++chunk_;
@@ -379,8 +380,8 @@ std::span<const Segment> ElementOverlay::segments(std::int32_t t, OverlayCounts&
     find_candidates(t);
     donor_edges_inside(t);
   }
-  sort_segments();
-  return sorted_;
+  group_segments();
+  return grouped_;
 }
 
 }  // namespace bezel::detail

@@ -62,7 +62,7 @@ class ElementOverlay {
 
   /// Forgets the edges computed so far (memory stays bounded by a chunk of elements).
   void begin_chunk();
-  /// The segments of all T n D of target element t, sorted by donor (exterior first).
+  /// The segments of all T n D of target element t, those of each donor together.
   /// counts: contacts are counted when first computed in a chunk by their owner (the edge's left or
   /// only element).
   std::span<const Segment> segments(std::int32_t t, OverlayCounts& counts);
@@ -112,7 +112,7 @@ class ElementOverlay {
   bool walk_edge(std::int32_t edge, Record& record);
   bool walk_inside(std::int32_t t);
   void next_walk();
-  void sort_segments();
+  void group_segments();
   std::int32_t locate_piece(std::span<const Vec2> curve, double r0, double r1) const;
   std::int32_t best_donor(const Vec2& p, double& margin) const;
   bool inside_target(std::int32_t t, std::span<const Vec2> curve, double s0, double s1) const;
@@ -142,8 +142,13 @@ class ElementOverlay {
   std::vector<Mark> marks_;
   std::vector<std::pair<std::int32_t, std::pair<double, double>>>
       covered_;  // donor edge, s interval on T's boundary
-  std::vector<Segment> segments_, sorted_;
-  std::vector<std::uint64_t> keys_;
+  std::vector<Segment> segments_, grouped_;
+  struct Group {
+    std::uint32_t stamp = 0, slot = 0;
+  };
+  std::vector<Group> group_;  // by donor element + 1
+  std::uint32_t group_now_ = 0;
+  std::vector<std::uint32_t> slots_, group_end_;
   std::vector<double> breaks_;
   CurveIntersections found_;
 };

@@ -66,6 +66,7 @@ OverlayMesh::OverlayMesh(std::shared_ptr<const TriangleMesh> source, const std::
   element_control.resize(elements * element_size);
   element_box.resize(elements);
   element_area.resize(elements);
+  element_diameter.resize(elements);
   parallel_for((elements + block - 1) / block,
                [&](std::size_t b) {
                  for (std::size_t e = b * block; e < std::min(elements, (b + 1) * block); ++e) {
@@ -74,6 +75,7 @@ OverlayMesh::OverlayMesh(std::shared_ptr<const TriangleMesh> source, const std::
                                                  element_size);
                    mesh->gather(ElementId(e), control);
                    for (const Vec2& p : control) element_box[e].include(p);
+                   element_diameter[e] = element_box[e].diameter();
                    const ValidityResult validity = check_validity(degree, control);
                    if (validity.status == Validity::inverted) {
                      throw InputError({"", 0, "triangle", static_cast<std::int64_t>(e)},

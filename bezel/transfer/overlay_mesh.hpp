@@ -35,7 +35,8 @@ struct OverlayMesh {
   std::vector<std::array<SideEdge, 3>> element_edges;
   std::vector<Vec2> element_control;
   std::vector<Box2> element_box;
-  std::vector<double> element_area;  ///< exact up to rounding
+  std::vector<double> element_area;      ///< exact up to rounding
+  std::vector<double> element_diameter;  ///< of the boxes
   Box2 box;
 
   std::size_t element_count() const { return element_box.size(); }

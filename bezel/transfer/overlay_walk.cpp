@@ -175,26 +175,32 @@ bool ElementOverlay::walk_inside(std::int32_t t) {
   return true;
 }
 
-void ElementOverlay::sort_segments() {
-  keys_.clear();
-  for (std::size_t i = 0; i < segments_.size(); ++i) {
-    const auto donor = static_cast<std::uint64_t>(segments_[i].donor + 1);
-    keys_.push_back((donor << 32) | i);
+// In the order in which the donors appear.
+void ElementOverlay::group_segments() {
+  if (++group_now_ == 0) {
+    std::fill(group_.begin(), group_.end(), Group{});
+    group_now_ = 1;
   }
-  if (keys_.size() > 64) {
-    std::sort(keys_.begin(), keys_.end());
-  } else {
-    // Few, and mostly in order.
-    for (std::size_t i = 1; i < keys_.size(); ++i) {
-      const std::uint64_t moved = keys_[i];
-      std::size_t k = i;
-      for (; k > 0 && keys_[k - 1] > moved; --k) keys_[k] = keys_[k - 1];
-      keys_[k] = moved;
+  group_end_.clear();
+  slots_.clear();
+  for (const Segment& segment : segments_) {
+    Group& group = group_[static_cast<std::size_t>(segment.donor + 1)];
+    if (group.stamp != group_now_) {
+      group = {group_now_, static_cast<std::uint32_t>(group_end_.size())};
+      group_end_.push_back(0);
     }
+    slots_.push_back(group.slot);
+    ++group_end_[group.slot];
   }
-  sorted_.resize(segments_.size());
-  for (std::size_t i = 0; i < keys_.size(); ++i)
-    sorted_[i] = segments_[static_cast<std::uint32_t>(keys_[i])];
+  std::uint32_t begin = 0;
+  for (std::uint32_t& end : group_end_) {
+    const std::uint32_t size = end;
+    end = begin;
+    begin += size;
+  }
+  grouped_.resize(segments_.size());
+  for (std::size_t i = 0; i < segments_.size(); ++i)
+    grouped_[group_end_[slots_[i]]++] = segments_[i];
 }
 
 }  // namespace bezel::detail
