@@ -166,19 +166,24 @@ TargetPlace ElementTransfer::target_place(const Group& g, std::int32_t t) {
 
 void ElementTransfer::fill_batch(std::span<const Segment> segments) {
   const int degree = target_.degree;
-  batch_.resize(segments.size(), degree, 2 * max_moment_degree);
+  const std::size_t points = static_cast<std::size_t>(degree) + 1, count = segments.size();
+  batch_.resize(count, degree, 2 * max_moment_degree);
   const std::size_t stride = batch_.stride;
+  const Vec2* const curves[2] = {target_.edge_control.data(), donor_.edge_control.data()};
+  double *from = batch_.from.data(), *to = batch_.to.data();
+  double *x = batch_.x.data(), *y = batch_.y.data();
   for (std::size_t i = 0; i < stride; ++i) {
     // The padding repeats the last piece.
-    const Segment& segment = segments[std::min(i, segments.size() - 1)];
-    const bool source = segment.target.edge < 0;
-    const Part& part = source ? segment.source : segment.target;
-    const Vec2* p = (source ? donor_ : target_).edge(part.edge).data();
-    batch_.from[i] = part.from;
-    batch_.to[i] = part.to;
-    for (int k = 0; k <= degree; ++k) {
-      batch_.x[static_cast<std::size_t>(k) * stride + i] = p[k].x();
-      batch_.y[static_cast<std::size_t>(k) * stride + i] = p[k].y();
+    const Segment& segment = segments[i < count ? i : count - 1];
+    const std::size_t source = segment.target.edge < 0 ? 1 : 0;
+    const Part* const parts[2] = {&segment.target, &segment.source};
+    const Part& part = *parts[source];
+    const Vec2* p = curves[source] + static_cast<std::size_t>(part.edge) * points;
+    from[i] = part.from;
+    to[i] = part.to;
+    for (std::size_t k = 0; k < points; ++k) {
+      x[k * stride + i] = p[k].x();
+      y[k * stride + i] = p[k].y();
     }
   }
 }
@@ -208,10 +213,7 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, std::span<const
     region.far = false;
     region.donor = nullptr;
     if (d == exterior) continue;
-    const Frame& donor = g.donor_frame[static_cast<std::size_t>(d)];
-    region.donor_centre = donor.centre;
-    region.donor_first = donor.gradient[1];
-    region.donor_second = donor.gradient[2];
+    region.frame = &g.donor_frame[static_cast<std::size_t>(d)];
     region.donor = g.donor_powers(d);
   }
   Accumulators& sums = moment_sums_[i];

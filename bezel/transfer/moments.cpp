@@ -9,6 +9,8 @@
 #include "bezel/numeric/binomial.hpp"
 #include "bezel/numeric/quadrature.hpp"
 
+// The bits are the same on every target, so the fewer the better for those who build this.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bezel/transfer/moments.cpp"
 #include "hwy/foreach_target.h"
@@ -435,12 +437,12 @@ void add_regions(const TargetPlace& place, const PieceBatch& batch, std::span<Ba
   for (std::size_t l = 0; l < regions.size(); ++l) {
     BatchRegion& region = regions[l];
     if (region.donor == nullptr) continue;
-    const Vec2 apart = place.centre - region.donor_centre;
-    const double m[4] = {
-        dot(region.donor_first, place.along_first), dot(region.donor_first, place.along_second),
-        dot(region.donor_second, place.along_first), dot(region.donor_second, place.along_second)};
-    offset[0][l] = dot(region.donor_first, apart);
-    offset[1][l] = dot(region.donor_second, apart);
+    const Vec2 apart = place.centre - region.frame->centre;
+    const Vec2 &first = region.frame->gradient[1], &second = region.frame->gradient[2];
+    const double m[4] = {dot(first, place.along_first), dot(first, place.along_second),
+                         dot(second, place.along_first), dot(second, place.along_second)};
+    offset[0][l] = dot(first, apart);
+    offset[1][l] = dot(second, apart);
     const double steep = std::max(std::max(std::abs(m[0]), std::abs(m[1])),
                                   std::max(std::abs(m[2]), std::abs(m[3]))) +
                          std::max(std::abs(offset[0][l]), std::abs(offset[1][l]));
@@ -536,8 +538,10 @@ void apply_matrix_target(std::size_t size, std::size_t padded, const double* mat
         sums[b] += value * row;
       }
     }
-    for (std::size_t n = 0; n < size; ++n)
-      y[n * components + c] += sums[n / moment_lanes][n % moment_lanes];
+    double result[2 * moment_lanes];
+    store(sums[0], result);
+    store(sums[1], result + moment_lanes);
+    for (std::size_t n = 0; n < size; ++n) y[n * components + c] += result[n];
   }
 }
 

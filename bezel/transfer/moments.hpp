@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "bezel/field/space.hpp"
 #include "bezel/numeric/vec.hpp"
 
 namespace bezel::detail {
@@ -94,8 +95,8 @@ void piece_moments(const PieceTable& table, int moment_degree, const TargetPlace
 /// A region, and what it gets.
 struct BatchRegion {
   std::uint32_t begin, end;  ///< its pieces
-  Vec2 donor_centre, donor_first, donor_second;
-  const double* donor;  ///< as in add_region; nullptr: the region gets nothing
+  const Frame* frame;        ///< of the donor's polynomial
+  const double* donor;       ///< as in add_region; nullptr: the region gets nothing
   bool far;  ///< out: not added, for the donor's polynomial is much steeper than the target's
 };
 

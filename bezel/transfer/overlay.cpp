@@ -17,9 +17,6 @@ constexpr double reliable_sine = 1e-5;
 // Where a piece is looked at; the middle first, the others only when the middle is too close to an
 // edge.
 constexpr std::array<double, 5> looks = {0.5, 0.25, 0.75, 0.0625, 0.9375};
-bool is_inner(double r) {
-  return r > contact_isolation && r < 1.0 - contact_isolation;
-}
 /// A barycentric margin that decides at once.
 constexpr double clear_margin = 1e-7;
 

@@ -33,6 +33,9 @@ inline double coincidence_distance(const CurveCache& a, const CurveCache& b) {
 /// A contact tells sides only when it is this far (in parameter) from edge ends and from other
 /// contacts.
 inline constexpr double contact_isolation = 1e-9;
+inline bool is_inner(double r) {
+  return r > contact_isolation && r < 1.0 - contact_isolation;
+}
 
 /// Part of an edge curve, run from parameter `from` to `to` (canonical direction of the edge; from
 /// > to reverses).
@@ -111,6 +114,9 @@ class ElementOverlay {
   std::int32_t donor_at_vertex(std::int32_t vertex);
   bool walk_edge(std::int32_t edge, Record& record);
   bool walk_inside(std::int32_t t);
+  /// Puts all common points of two edges on the list of contacts, when all are plain crossings.
+  bool plain_crossings(const CurveCache& curve, const CurveCache& other, double distance,
+                       std::int32_t donor_edge, double& gap);
   void next_walk();
   void group_segments();
   std::int32_t locate_piece(std::span<const Vec2> curve, double r0, double r1) const;

@@ -14,6 +14,13 @@ using geometry_kernel::meet_quickly;
 using geometry_kernel::Meeting;
 using geometry_kernel::QuickCrossing;
 
+namespace {
+
+/// Parameters of a crossing known to within this are sure to be in order with others.
+constexpr double reliable_condition = 0.01 * contact_isolation;
+
+}  // namespace
+
 std::int32_t ElementOverlay::donor_at_vertex(std::int32_t vertex) {
   Place& place = vertex_place_[static_cast<std::size_t>(vertex)];
   if (place.chunk != chunk_) {
@@ -53,14 +60,21 @@ bool ElementOverlay::walk_edge(std::int32_t edge, Record& record) {
           curve.box.lo[1] > other.box.hi[1] + distance ||
           other.box.lo[1] > curve.box.hi[1] + distance)
         continue;
-      const Meeting meeting = meet_quickly(curve, other, distance, crossing);
-      if (meeting == Meeting::none) continue;
-      if (meeting == Meeting::unclear) return give_up();
       const std::int32_t next = donor_.across(walk_[i], side.edge.value);
+      const auto count = contacts_.size();
+      switch (meet_quickly(curve, other, distance, crossing)) {
+        case Meeting::none:
+          break;
+        case Meeting::crossing:
+          contacts_.push_back(
+              {crossing.s, crossing.t, side.edge.value, static_cast<std::int8_t>(crossing.sign)});
+          gap = std::max(gap, crossing.gap);
+          break;
+        case Meeting::unclear:
+          if (!plain_crossings(curve, other, distance, side.edge.value, gap)) return give_up();
+      }
+      if (contacts_.size() == count) continue;
       if (next == exterior) return give_up();
-      contacts_.push_back(
-          {crossing.s, crossing.t, side.edge.value, static_cast<std::int8_t>(crossing.sign)});
-      gap = std::max(gap, crossing.gap);
       walk_.push_back(next);
     }
   }
@@ -98,6 +112,23 @@ bool ElementOverlay::walk_edge(std::int32_t edge, Record& record) {
   record.piece_end = static_cast<std::uint32_t>(pieces_.size());
   record.gap = gap;
   record.crossings = static_cast<std::int32_t>(contacts.size());
+  return true;
+}
+
+bool ElementOverlay::plain_crossings(const CurveCache& curve, const CurveCache& other,
+                                     double distance, std::int32_t donor_edge, double& gap) {
+  IntersectOptions options;
+  options.coincidence_distance = distance;
+  intersect(curve, other, options, found_);
+  if (!found_.tangencies.empty() || !found_.overlaps.empty() || !found_.unresolved.empty())
+    return false;
+  for (const Crossing& c : found_.crossings) {
+    if (!c.certified || c.sign == 0 || !is_inner(c.s) || !is_inner(c.t) ||
+        c.condition * coordinate_rounding > reliable_condition)
+      return false;
+    contacts_.push_back({c.s, c.t, donor_edge, static_cast<std::int8_t>(c.sign)});
+    gap = std::max(gap, norm(c.point_a - c.point_b));
+  }
   return true;
 }
 
