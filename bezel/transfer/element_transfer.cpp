@@ -304,7 +304,8 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
     components += static_cast<std::size_t>(g.components);
     have_moments_[i] = 0;
   }
-  origin_ = target_.element(t).front();
+  const auto corners = target_.corners(t);
+  origin_ = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
   masses_.assign(components, 0.0);
 
   // The regions: shape and area do not depend on the fields.
