@@ -14,7 +14,7 @@ constexpr double end_margin = 1e-9;
 /// How far beyond [0, 1] the caches' slopes hold.
 constexpr double reach = 0.25;
 constexpr double least_sine = 0.01;
-/// Newton's steps are quadratic below this: the one after next is below rounding.
+/// Newton's steps are quadratic below this: the next one is the last.
 constexpr double last_step = 1e-7;
 
 /// All of q on one side of the band around the chord of `curve`.
@@ -100,12 +100,12 @@ Meeting meet(const CurveCache& a, const CurveCache& b, double distance, QuickCro
       const CurvePoint x = point_at<M>(p, m, s), y = point_at<N>(q, n, t);
       const Vec2 f = x.value - y.value;
       out.gap = norm(f);
-      if (settled) break;
       // a' ds - b' dt = -f
       const double inverse = 1.0 / cross(y.derivative, x.derivative);
       const double ds = cross(f, y.derivative) * inverse, dt = cross(f, x.derivative) * inverse;
       s += ds;
       t += dt;
+      if (settled) break;
       if (!(s > -reach && s < 1.0 + reach && t > -reach && t < 1.0 + reach))
         return Meeting::unclear;
       settled = std::fabs(ds) < last_step && std::fabs(dt) < last_step;

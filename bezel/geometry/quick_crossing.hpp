@@ -24,7 +24,9 @@ struct QuickCrossing {
 /// @param a, b      from cache_curve
 /// @param distance  curves nearer than this must not be called apart
 /// @param out       filled in for a crossing only
-/// @accuracy s and t within 8 u (1 + condition) (5 seen); the sine of the angle is above 0.01 on all of both
+/// @accuracy s and t within (8 + d) u (1 + condition), d the higher degree; the sine of the angle
+/// is
+///           above 0.01 on all of both
 /// @cost     5 ns when apart, 10 ns for crossing straight edges, 60 ns for crossing quadratics
 /// @limits   degrees above 10 are always unclear
 /// @source   docs/methods/geometry.md, "Edges that cross once"
