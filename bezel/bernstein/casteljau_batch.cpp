@@ -1,17 +1,14 @@
-// Evaluation at many points: SIMD lanes are points, each lane runs the scalar de Casteljau with the
-// same products and sums in the same order, so every target and the scalar functions give the same
-// bits.
+// SIMD lanes are points, each lane runs the scalar de Casteljau with the same products and sums in
+// the same order, so every target and the scalar functions give the same bits.
 
-#include <algorithm>
+#include "bezel/bernstein/casteljau_batch.hpp"
+
 #include <cstddef>
 
-#include "bezel/bernstein/checks.hpp"
 #include "bezel/bernstein/interval_kernel.hpp"
-#include "bezel/bernstein/triangle.hpp"
-#include "bezel/bernstein/triangle_kernel.hpp"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bezel/bernstein/batch.cpp"
+#define HWY_TARGET_INCLUDE "bezel/bernstein/casteljau_batch.cpp"
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
 
@@ -98,56 +95,6 @@ void evaluate_interval(int d, const double* HWY_RESTRICT b, const double* HWY_RE
   for (; q < count; ++q) out[q] = kernel::evaluate_unchecked(d, b, s[q]);
 }
 
-void evaluate_triangle(int d, const double* HWY_RESTRICT b, const double* HWY_RESTRICT u,
-                       const double* HWY_RESTRICT v, std::size_t count, double* HWY_RESTRICT out,
-                       double* HWY_RESTRICT work) {
-  const hn::ScalableTag<double> tag;
-  const std::size_t lanes = hn::Lanes(tag);
-  std::size_t q = 0;
-  for (; q + lanes <= count; q += lanes) {
-    const auto l1 = hn::LoadU(tag, u + q);
-    const auto l2 = hn::LoadU(tag, v + q);
-    const auto l0 = hn::Sub(hn::Sub(hn::Set(tag, 1.0), l1), l2);
-    if (d == 0) {
-      hn::StoreU(hn::Set(tag, b[0]), tag, out + q);
-      continue;
-    }
-    const double* lower = b;
-    double* write = work;
-    for (int k = 0; k < d; ++k) {
-      const double* upper = lower + (d - k + 1);
-      auto left = hn::Set(tag, lower[0]);
-      for (int j = 0; j < d - k; ++j) {
-        const auto right = hn::Set(tag, lower[j + 1]);
-        const auto sum = hn::Add(hn::Mul(l0, left), hn::Mul(l1, right));
-        hn::Store(hn::Add(sum, hn::Mul(l2, hn::Set(tag, upper[j]))), tag, write);
-        write += lanes;
-        left = right;
-      }
-      lower = upper;
-    }
-    for (int m = d - 1; m > 0; --m) {
-      const double* low = work;
-      write = work;
-      for (int k = 0; k < m; ++k) {
-        const double* up = low + as_size(m - k + 1) * lanes;
-        auto left = hn::Load(tag, low);
-        for (int j = 0; j < m - k; ++j) {
-          const auto right = hn::Load(tag, low + as_size(j + 1) * lanes);
-          const auto sum = hn::Add(hn::Mul(l0, left), hn::Mul(l1, right));
-          hn::Store(hn::Add(sum, hn::Mul(l2, hn::Load(tag, up + as_size(j) * lanes))), tag, write);
-          write += lanes;
-          left = right;
-        }
-        low = up;
-      }
-    }
-    hn::StoreU(hn::Load(tag, work), tag, out + q);
-  }
-  for (; q < count; ++q)
-    out[q] = kernel::evaluate_unchecked(d, b, Lambda{(1.0 - u[q]) - v[q], u[q], v[q]});
-}
-
 std::size_t lane_count() {
   return hn::Lanes(hn::ScalableTag<double>());
 }
@@ -161,29 +108,12 @@ HWY_AFTER_NAMESPACE();
 namespace bezel::bernstein {
 
 HWY_EXPORT(evaluate_interval);
-HWY_EXPORT(evaluate_triangle);
 HWY_EXPORT(lane_count);
 
-void evaluate(std::span<const double> b, std::span<const double> s, std::span<double> out) {
-  const int d = checks::interval(b);
-  checks::finite(s, "parameter");
-  checks::size(out.size(), s.size(), "places for values");
+void casteljau_points(int d, const double* b, const double* s, std::size_t count, double* out) {
   const std::size_t lanes = HWY_DYNAMIC_DISPATCH(lane_count)();
-  const auto work = hwy::AllocateAligned<double>(b.size() * lanes);
-  HWY_DYNAMIC_DISPATCH(evaluate_interval)(d, b.data(), s.data(), s.size(), out.data(), work.get());
-}
-
-void evaluate(int d, std::span<const double> b, std::span<const double> u,
-              std::span<const double> v, std::span<double> out) {
-  checks::triangle(d, b);
-  checks::size(v.size(), u.size(), "coordinates v");
-  checks::size(out.size(), u.size(), "places for values");
-  checks::finite(u, "coordinate u");
-  checks::finite(v, "coordinate v");
-  const std::size_t lanes = HWY_DYNAMIC_DISPATCH(lane_count)();
-  const auto work = hwy::AllocateAligned<double>(b.size() * lanes);
-  HWY_DYNAMIC_DISPATCH(evaluate_triangle)
-  (d, b.data(), u.data(), v.data(), u.size(), out.data(), work.get());
+  const auto work = hwy::AllocateAligned<double>(static_cast<std::size_t>(d + 1) * lanes);
+  HWY_DYNAMIC_DISPATCH(evaluate_interval)(d, b, s, count, out, work.get());
 }
 
 }  // namespace bezel::bernstein
