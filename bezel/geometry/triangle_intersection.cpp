@@ -90,8 +90,8 @@ struct Both {
       box = box_of(valid_a ? pb : pa);
       return TriangleRelation::unresolved;
     }
-    a.assign(g, pa);
-    b.assign(h, pb);
+    a.assign(g, pa, distance > 0.0);
+    b.assign(h, pb, distance > 0.0);
     if (!arrangement.build(a, b, distance)) {
       reason = arrangement.reason();
       box = arrangement.where();
