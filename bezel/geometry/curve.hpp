@@ -55,6 +55,8 @@ struct Tangency {
   int order;  ///< order of contact, the multiplicity of the common point: 2 touching, 3 osculating
               ///< and crossing (odd orders cross, even ones do not), ...; proven. With a
               ///< coincidence distance 0: unknown
+  int sign = 0;  ///< of odd orders, as that of a Crossing: +1 when b passes from right to left of a
+                 ///< as t increases, -1 the other way; proven. 0 for even and unknown orders
 };
 /// The curves coincide on matching intervals: exactly, or within the coincidence distance.
 struct Overlap {
