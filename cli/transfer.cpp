@@ -23,6 +23,7 @@ struct TransferCommand {
   std::optional<int> degree;
   Basis basis = Basis::reference;
   CLI::Option* basis_given = nullptr;
+  bool keep_boundary = false;
   std::optional<Format> format;
 };
 
@@ -44,6 +45,14 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
                       {"max_before", f.max_before},
                       {"min", f.min_after},
                       {"max", f.max_after}});
+    if (!f.mass_solve) continue;
+    const MassSolve& solve = *f.mass_solve;
+    fields.back()["mass_solve"] = {
+        {"dofs", solve.dofs},
+        {"method", solve.iterations > 0 ? "conjugate_gradients" : "cholesky"},
+        {"iterations", solve.iterations},
+        {"relative_residual", solve.relative_residual},
+        {"boundary_mass_change", solve.boundary_mass_change}};
   }
   Json uncovered = Json::array();
   for (const auto& part : r.uncovered_elements)
@@ -72,7 +81,7 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
                 {"solve", r.seconds.solve}}}};
 }
 
-std::string to_table(const TransferReport& r) {
+std::string to_table(const TransferReport& r, bool keep_boundary) {
   std::size_t width = 5;
   const auto label = [](const FieldReport& f, bool several) {
     return several ? fmt::format("{}[{}]", f.name, f.component) : f.name;
@@ -96,6 +105,18 @@ std::string to_table(const TransferReport& r) {
   text +=
       fmt::format("overlay: {} pairs, {} crossings, {} tangencies, {} overlaps, {} unresolved\n",
                   r.pairs, r.crossings, r.tangencies, r.overlaps, r.unresolved);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (!r.fields[i].mass_solve) continue;
+    const MassSolve& solve = *r.fields[i].mass_solve;
+    text += fmt::format(
+        "{:<{}}  {} degrees of freedom, {}, residual {:.1e}", labels[i], width, solve.dofs,
+        solve.iterations > 0 ? counted(static_cast<std::size_t>(solve.iterations), "iteration")
+                             : std::string("sparse Cholesky"),
+        solve.relative_residual);
+    if (keep_boundary)
+      text += fmt::format(", mass changed by {:.3g} for the boundary", solve.boundary_mass_change);
+    text += "\n";
+  }
   text += fmt::format("largest partition residual {:.1e}, largest joint gap {:.1e}\n",
                       r.max_partition_residual, r.max_joint_gap);
   if (r.uncovered_area > 0) {
@@ -154,6 +175,9 @@ int run(const TransferCommand& options, const Context& context) {
   how_to.uncovered = options.uncovered == "extend" ? Uncovered::extend
                      : options.uncovered == "zero" ? Uncovered::zero
                                                    : Uncovered::error;
+  how_to.continuity =
+      options.continuity == "cg" ? Continuity::continuous : Continuity::discontinuous;
+  how_to.keep_boundary = options.keep_boundary;
   how_to.threads = context.threads;
   TransferResult result;
   {
@@ -175,7 +199,8 @@ int run(const TransferCommand& options, const Context& context) {
   write_both(options, moved, how, report, context);
   std::vector<std::string> files = {options.out};
   if (!options.report.empty()) files.push_back(options.report);
-  print_or_remove(context.json ? to_text(report) : to_table(result.report), files);
+  print_or_remove(context.json ? to_text(report) : to_table(result.report, options.keep_boundary),
+                  files);
   if (!context.json && context.verbose > 0) {
     const auto& s = result.report.seconds;
     note(context, fmt::format("{:.3g} s: overlay {:.3g}, integrate {:.3g}, solve {:.3g}", s.total,
@@ -207,10 +232,18 @@ void add_transfer(CLI::App& app, Context& context) {
   o.basis_given = add_basis_option(
       *command, o.basis,
       "reference (mapped) or physical (polynomials in x and y); default: each field's own");
-  command->add_option("--continuity", o.continuity, "dg: the new fields are discontinuous")
-      ->check(CLI::IsMember({"dg"}))
-      ->type_name("CONTINUITY")
-      ->capture_default_str();
+  CLI::Option* continuity =
+      command
+          ->add_option("--continuity", o.continuity,
+                       "dg: the new fields are discontinuous; cg: continuous, in reference basis")
+          ->check(CLI::IsMember({"dg", "cg"}))
+          ->type_name("CONTINUITY")
+          ->capture_default_str();
+  command
+      ->add_flag(
+          "--keep-boundary", o.keep_boundary,
+          "With --continuity cg: the boundary takes the donor's values; mass changes a little")
+      ->needs(continuity);
   command
       ->add_option("--uncovered", o.uncovered,
                    "Where no donor triangle lies: error (refuse), extend (continue the nearest "
