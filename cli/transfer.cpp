@@ -148,7 +148,21 @@ void write_both(const TransferCommand& options, const Dataset& data, const Write
   }
 }
 
+void check_usage(const TransferCommand& options) {
+  if (options.continuity != "cg") {
+    if (options.keep_boundary) throw UsageError("--keep-boundary needs --continuity cg");
+    return;
+  }
+  if (options.basis_given->count() > 0 && options.basis == Basis::physical) {
+    throw UsageError(
+        "--basis physical: not with --continuity cg: along a curved edge a polynomial in x and y "
+        "has a higher degree than the edge has coefficients");
+  }
+  if (options.degree == 0) throw UsageError("--degree 0: --continuity cg needs at least 1");
+}
+
 int run(const TransferCommand& options, const Context& context) {
+  check_usage(options);
   WriteOptions how;
   how.format = options.format ? options.format : format_of(options.out);
   require_writable(options.out);
@@ -188,7 +202,9 @@ int run(const TransferCommand& options, const Context& context) {
       throw InputError(InputPlace{options.target, 0, {}, -1},
                        std::string(error.what()) + " (--uncovered)");
     } catch (const InputError& error) {
-      throw error.in_file(error.message().find("donor mesh") == 0 ? options.donor : options.target);
+      const bool donors =
+          error.message().find("donor mesh") == 0 || error.message().find("transfer: field") == 0;
+      throw error.in_file(donors ? options.donor : options.target);
     }
   }
   Dataset moved;
@@ -232,18 +248,15 @@ void add_transfer(CLI::App& app, Context& context) {
   o.basis_given = add_basis_option(
       *command, o.basis,
       "reference (mapped) or physical (polynomials in x and y); default: each field's own");
-  CLI::Option* continuity =
-      command
-          ->add_option("--continuity", o.continuity,
-                       "dg: the new fields are discontinuous; cg: continuous, in reference basis")
-          ->check(CLI::IsMember({"dg", "cg"}))
-          ->type_name("CONTINUITY")
-          ->capture_default_str();
   command
-      ->add_flag(
-          "--keep-boundary", o.keep_boundary,
-          "With --continuity cg: the boundary takes the donor's values; mass changes a little")
-      ->needs(continuity);
+      ->add_option("--continuity", o.continuity,
+                   "dg: the new fields are discontinuous; cg: continuous (reference basis)")
+      ->check(CLI::IsMember({"dg", "cg"}))
+      ->type_name("CONTINUITY")
+      ->capture_default_str();
+  command->add_flag(
+      "--keep-boundary", o.keep_boundary,
+      "With --continuity cg: the boundary takes the donor's values; mass changes a little");
   command
       ->add_option("--uncovered", o.uncovered,
                    "Where no donor triangle lies: error (refuse), extend (continue the nearest "
