@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -24,8 +25,20 @@ struct TransferCommand {
   Basis basis = Basis::reference;
   CLI::Option* basis_given = nullptr;
   bool keep_boundary = false;
+  std::string mass_method = "auto";
   std::optional<Format> format;
 };
+
+constexpr std::array<const char*, 4> method_names = {"auto", "cholesky", "conjugate_gradients",
+                                                     "petsc"};
+const char* method_name(MassMethod method) {
+  return method_names[static_cast<std::size_t>(method)];
+}
+
+MassMethod method_named(const std::string& name) {
+  const auto at = std::find(method_names.begin(), method_names.end(), name);
+  return static_cast<MassMethod>(at - method_names.begin());
+}
 
 Json to_json(const TransferCommand& options, const TransferReport& r) {
   Json fields = Json::array();
@@ -47,12 +60,11 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
                       {"max", f.max_after}});
     if (!f.mass_solve) continue;
     const MassSolve& solve = *f.mass_solve;
-    fields.back()["mass_solve"] = {
-        {"dofs", solve.dofs},
-        {"method", solve.iterations > 0 ? "conjugate_gradients" : "cholesky"},
-        {"iterations", solve.iterations},
-        {"relative_residual", solve.relative_residual},
-        {"boundary_mass_change", solve.boundary_mass_change}};
+    fields.back()["mass_solve"] = {{"dofs", solve.dofs},
+                                   {"method", method_name(solve.method)},
+                                   {"iterations", solve.iterations},
+                                   {"relative_residual", solve.relative_residual},
+                                   {"boundary_mass_change", solve.boundary_mass_change}};
   }
   Json uncovered = Json::array();
   for (const auto& part : r.uncovered_elements)
@@ -108,11 +120,12 @@ std::string to_table(const TransferReport& r, bool keep_boundary) {
   for (std::size_t i = 0; i < labels.size(); ++i) {
     if (!r.fields[i].mass_solve) continue;
     const MassSolve& solve = *r.fields[i].mass_solve;
-    text += fmt::format(
-        "{:<{}}  {} degrees of freedom, {}, residual {:.1e}", labels[i], width, solve.dofs,
-        solve.iterations > 0 ? counted(static_cast<std::size_t>(solve.iterations), "iteration")
-                             : std::string("sparse Cholesky"),
-        solve.relative_residual);
+    text += fmt::format("{:<{}}  {} degrees of freedom, {}, residual {:.1e}", labels[i], width,
+                        solve.dofs,
+                        solve.method == MassMethod::cholesky
+                            ? std::string("sparse Cholesky")
+                            : counted(static_cast<std::size_t>(solve.iterations), "iteration"),
+                        solve.relative_residual);
     if (keep_boundary)
       text += fmt::format(", mass changed by {:.3g} for the boundary", solve.boundary_mass_change);
     text += "\n";
@@ -151,6 +164,7 @@ void write_both(const TransferCommand& options, const Dataset& data, const Write
 void check_usage(const TransferCommand& options) {
   if (options.continuity != "cg") {
     if (options.keep_boundary) throw UsageError("--keep-boundary needs --continuity cg");
+    if (options.mass_method != "auto") throw UsageError("--mass-method needs --continuity cg");
     return;
   }
   if (options.basis_given->count() > 0 && options.basis == Basis::physical) {
@@ -159,6 +173,8 @@ void check_usage(const TransferCommand& options) {
         "has a higher degree than the edge has coefficients");
   }
   if (options.degree == 0) throw UsageError("--degree 0: --continuity cg needs at least 1");
+  if (!is_available(method_named(options.mass_method)))
+    throw UsageError("--mass-method petsc: this build of bezel has no PETSc");
 }
 
 int run(const TransferCommand& options, const Context& context) {
@@ -192,6 +208,7 @@ int run(const TransferCommand& options, const Context& context) {
   how_to.continuity =
       options.continuity == "cg" ? Continuity::continuous : Continuity::discontinuous;
   how_to.keep_boundary = options.keep_boundary;
+  how_to.mass_method = method_named(options.mass_method);
   how_to.threads = context.threads;
   TransferResult result;
   {
@@ -257,6 +274,13 @@ void add_transfer(CLI::App& app, Context& context) {
   command->add_flag(
       "--keep-boundary", o.keep_boundary,
       "With --continuity cg: the boundary takes the donor's values; mass changes a little");
+  command
+      ->add_option("--mass-method", o.mass_method,
+                   "With --continuity cg: auto, cholesky, conjugate_gradients, or petsc in builds "
+                   "that have it")
+      ->check(CLI::IsMember(std::vector<std::string>(method_names.begin(), method_names.end())))
+      ->type_name("METHOD")
+      ->capture_default_str();
   command
       ->add_option("--uncovered", o.uncovered,
                    "Where no donor triangle lies: error (refuse), extend (continue the nearest "

@@ -40,6 +40,7 @@ MassSolution solve_component(ContinuousMass& mass, std::span<const double> c,
     missing = missing_masses(mass, c, solution.dofs);
   }
   report.dofs = solution.dofs.size();
+  report.method = mass.method();
   report.iterations = solution.iterations;
   report.relative_residual = solution.relative_residual;
   report.boundary_mass_change = keep_boundary ? -sum(missing) : 0.0;
@@ -64,8 +65,8 @@ std::vector<ContinuousOutcome> make_continuous(std::span<Group> groups, const Ov
     auto known = std::find_if(masses.begin(), masses.end(),
                               [&](const auto& m) { return m->space() == g.continuous_space; });
     if (known == masses.end()) {
-      masses.push_back(
-          std::make_unique<ContinuousMass>(g.continuous_space, boundary.fixed, options.threads));
+      masses.push_back(std::make_unique<ContinuousMass>(g.continuous_space, boundary.fixed,
+                                                        options.threads, options.mass_method));
       known = masses.end() - 1;
     }
     outcomes[k].solve.resize(nc);

@@ -1,6 +1,7 @@
 #include "bezel/transfer/mass_solve.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -12,6 +13,14 @@
 #include "bezel/geometry/triangle.hpp"
 #include "bezel/transfer/accumulate.hpp"
 #include "bezel/transfer/mass_rule.hpp"
+
+namespace bezel {
+
+bool is_available(MassMethod method) {
+  return method != MassMethod::petsc || detail::PetscSystem::available();
+}
+
+}  // namespace bezel
 
 namespace bezel::detail {
 namespace {
@@ -95,7 +104,7 @@ struct ContinuousMass::Direct {
 };
 
 ContinuousMass::ContinuousMass(std::shared_ptr<const Space> space, std::vector<char> fixed,
-                               int threads, std::size_t largest_direct)
+                               int threads, MassMethod method)
     : space_(std::move(space)),
       fixed_(std::move(fixed)),
       threads_(threads),
@@ -103,7 +112,11 @@ ContinuousMass::ContinuousMass(std::shared_ptr<const Space> space, std::vector<c
       elements_(space_->mesh()->element_count()),
       blocks_((elements_ + width - 1) / width),
       straight_(space_->mesh()->degree() == 1),
-      direct_(space_->dof_count() <= largest_direct) {
+      method_(method) {
+  if (method_ == MassMethod::automatic) {
+    method_ = space_->dof_count() <= direct_limit ? MassMethod::cholesky
+                                                  : MassMethod::conjugate_gradients;
+  }
   factorise();
   const std::size_t dofs = space_->dof_count();
   begin_.assign(dofs + 1, 0);
@@ -130,7 +143,8 @@ ContinuousMass::ContinuousMass(std::shared_ptr<const Space> space, std::vector<c
     }
   });
   local_.resize(blocks_ * size_ * width);
-  if (direct_) assemble();
+  if (method_ == MassMethod::cholesky) assemble_cholesky();
+  if (method_ == MassMethod::petsc) assemble_petsc();
 }
 
 ContinuousMass::~ContinuousMass() = default;
@@ -321,7 +335,7 @@ std::vector<double> ContinuousMass::residual(std::span<const double> c, std::spa
   return r;
 }
 
-void ContinuousMass::assemble() {
+void ContinuousMass::assemble_cholesky() {
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(elements_ * size_ * size_);
   std::vector<double> matrix(size_ * size_);
@@ -343,6 +357,28 @@ void ContinuousMass::assemble() {
   solver_->matrix.resize(n, n);
   solver_->matrix.setFromTriplets(entries.begin(), entries.end());
   solver_->solver = std::make_unique<field_detail::MassSolver>(solver_->matrix);
+}
+
+void ContinuousMass::assemble_petsc() {
+  const auto is_fixed = [&](std::size_t d) { return !fixed_.empty() && fixed_[d]; };
+  std::vector<std::int32_t> row_size(space_->dof_count());
+  for (std::size_t d = 0; d < row_size.size(); ++d)
+    row_size[d] = static_cast<std::int32_t>((begin_[d + 1] - begin_[d]) * size_);
+  petsc_ = std::make_unique<PetscSystem>(row_size);
+  std::vector<double> matrix(size_ * size_);
+  std::vector<std::int32_t> rows(size_);
+  for (std::size_t e = 0; e < elements_; ++e) {
+    element_matrix(e, matrix);
+    const auto own = space_->dofs(ElementId(e));
+    for (std::size_t i = 0; i < size_; ++i)
+      rows[i] = is_fixed(static_cast<std::size_t>(own[i])) ? -1 : own[i];
+    petsc_->add(rows, matrix);
+  }
+  // The fixed dofs, whose right-hand side is 0, get a row of their own.
+  constexpr std::array<double, 1> unit{1.0};
+  for (std::size_t d = 0; d < row_size.size(); ++d)
+    if (is_fixed(d)) petsc_->add(std::array{static_cast<std::int32_t>(d)}, unit);
+  petsc_->finish();
 }
 
 /// Adds to x the solution for the residual r, to the recursive residual `smallest`.
@@ -400,10 +436,12 @@ MassSolution ContinuousMass::solve(std::span<const double> c, std::span<const do
   std::vector<double> candidate;
   for (int round = 0; round < max_rounds && now > aim * size; ++round) {
     candidate = x;
-    if (direct_) {
+    if (method_ == MassMethod::cholesky) {
       const Eigen::MatrixXd d = solver_->solver->solve(
           Eigen::Map<const Eigen::VectorXd>(r.data(), static_cast<Eigen::Index>(n)));
       for (std::size_t i = 0; i < n; ++i) candidate[i] += d(static_cast<Eigen::Index>(i), 0);
+    } else if (method_ == MassMethod::petsc) {
+      solution.iterations += petsc_->solve(r, aim * size, candidate);
     } else {
       solution.iterations += conjugate_gradients(r, aim * size, candidate);
     }

@@ -8,15 +8,18 @@
 #include <vector>
 
 #include "bezel/field/space.hpp"
+#include "bezel/transfer/petsc_system.hpp"
+#include "bezel/transfer/transfer.hpp"
 
 namespace bezel::detail {
 
-/// Systems of at most this many degrees of freedom are solved by sparse Cholesky.
+/// MassMethod::automatic: sparse Cholesky up to this many degrees of freedom, conjugate gradients
+/// above.
 inline constexpr std::size_t direct_limit = 2000;
 
 struct MassSolution {
   std::vector<double> dofs;
-  int iterations = 0;            ///< of conjugate gradients; 0 when solved directly
+  int iterations = 0;            ///< 0 when solved directly
   double relative_residual = 0;  ///< |A^T M (c - A x)| / |A^T M c|, over the dofs solved for
 };
 
@@ -30,16 +33,16 @@ class ContinuousMass {
  public:
   /// @param space  continuous
   /// @param fixed  empty, or per dof whether solve() keeps its value instead of solving for it
-  /// @param largest_direct  sparse Cholesky up to this many dofs, conjugate gradients above
-  /// @throws NumericsError naming the triangle when a mass matrix is not positive definite
+  /// @throws NumericsError naming the triangle when a mass matrix is not positive definite;
+  ///         InputError for petsc in a build without it
   ContinuousMass(std::shared_ptr<const Space> space, std::vector<char> fixed, int threads,
-                 std::size_t largest_direct = direct_limit);
+                 MassMethod method = MassMethod::automatic);
   ~ContinuousMass();
   ContinuousMass(const ContinuousMass&) = delete;
   ContinuousMass& operator=(const ContinuousMass&) = delete;
 
   const std::shared_ptr<const Space>& space() const { return space_; }
-  bool direct() const { return direct_; }
+  MassMethod method() const { return method_; }  ///< the one used, not automatic
   /// Element e's mass matrix, row major.
   void element_matrix(std::size_t e, std::span<double> out) const;
   /// Integrals of the elements' basis functions, as the factors have them: shape
@@ -65,7 +68,8 @@ class ContinuousMass {
   template <class Source, class Work>
   void by_elements(const Source& source, const Work& work, std::span<double> y);
   void factorise();
-  void assemble();
+  void assemble_cholesky();
+  void assemble_petsc();
   void multiply_block(std::size_t block, double* v) const;
   void mask(std::vector<double>& v) const;
   std::vector<double> residual(std::span<const double> c, std::span<const double> x);
@@ -77,7 +81,8 @@ class ContinuousMass {
   std::vector<char> fixed_;
   int threads_;
   std::size_t size_, elements_, blocks_;
-  bool straight_, direct_;
+  bool straight_;
+  MassMethod method_;
   std::vector<double> lower_;    ///< per block of elements: packed factor, lane by lane
   std::vector<double> inverse_;  ///< reciprocals of the factor's diagonal, the same way
   std::vector<double> scale_;    ///< straight meshes: twice the area of each element
@@ -87,6 +92,7 @@ class ContinuousMass {
   std::vector<std::uint32_t> entry_;  ///< places in local_
   std::vector<double> local_, partial_;
   std::unique_ptr<Direct> solver_;
+  std::unique_ptr<PetscSystem> petsc_;
 };
 
 }  // namespace bezel::detail

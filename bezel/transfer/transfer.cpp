@@ -153,6 +153,8 @@ void check_arguments(std::span<const Field> donors,
                          "more");
       }
     }
+    if (!is_available(options.mass_method))
+      throw InputError("transfer: this build of bezel has no PETSc, expected another mass method");
   } else if (options.keep_boundary) {
     throw InputError("transfer: boundary values are kept by continuous targets only");
   }

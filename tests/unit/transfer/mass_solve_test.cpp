@@ -15,7 +15,7 @@ namespace {
 using test::bend;
 using test::grid_mesh;
 
-constexpr std::size_t always = static_cast<std::size_t>(-1), never = 0;
+constexpr MassMethod cholesky = MassMethod::cholesky, gradients = MassMethod::conjugate_gradients;
 
 std::vector<double> random_values(std::size_t n, const char* name) {
   RandomStream random(name, 1);
@@ -126,8 +126,8 @@ TEST(ContinuousMass, GradientsEqualCholeskyAndSatisfyTheEquations) {
       const auto mesh = grid_mesh(4, g, 1.0, bend(0.2, 0.15));
       const auto space = Space::continuous(mesh, p);
       const std::vector<double> c = random_values(space->coefficient_count(), "solve");
-      ContinuousMass direct(space, {}, 1, always);
-      ContinuousMass iterative(space, {}, 1, never);
+      ContinuousMass direct(space, {}, 1, cholesky);
+      ContinuousMass iterative(space, {}, 1, gradients);
       const MassSolution a = direct.solve(c);
       const MassSolution b = iterative.solve(c);
       EXPECT_EQ(a.iterations, 0);
@@ -148,7 +148,7 @@ TEST(ContinuousMass, StepsDoNotGrowWithTheMesh) {
     std::vector<int> steps;
     for (const int n : {6, 12, 24}) {
       const auto space = Space::continuous(grid_mesh(n, 2, 1.0, bend(0.2, 0.15)), p);
-      ContinuousMass mass(space, {}, 1, never);
+      ContinuousMass mass(space, {}, 1, gradients);
       steps.push_back(mass.solve(random_values(space->coefficient_count(), "steps")).iterations);
     }
     EXPECT_LE(steps[2], steps[0] + 3) << "degree " << p;
@@ -157,17 +157,17 @@ TEST(ContinuousMass, StepsDoNotGrowWithTheMesh) {
 }
 
 TEST(ContinuousMass, ContinuousCoefficientsStay) {
-  for (const std::size_t largest : {always, never}) {
+  for (const MassMethod method : {cholesky, gradients}) {
     const auto space = Space::continuous(grid_mesh(4, 3, 1.0, bend(0.2, 0.15)), 3);
     const std::vector<double> x = random_values(space->dof_count(), "stay");
-    ContinuousMass mass(space, {}, 1, largest);
+    ContinuousMass mass(space, {}, 1, method);
     EXPECT_LE(difference(mass.solve(space->expand(x)).dofs, x), 1e-15 * size(x));
   }
 }
 
 TEST(ContinuousMass, ZeroStaysZero) {
   const auto space = Space::continuous(grid_mesh(2, 2, 1.0, bend(0.2, 0.15)), 2);
-  ContinuousMass mass(space, {}, 1, never);
+  ContinuousMass mass(space, {}, 1, gradients);
   const MassSolution s = mass.solve(std::vector<double>(space->coefficient_count(), 0.0));
   for (const double x : s.dofs) EXPECT_EQ(x, 0.0);
   EXPECT_EQ(s.relative_residual, 0.0);
@@ -181,8 +181,8 @@ TEST(ContinuousMass, FixedDofsKeepTheirValues) {
   std::vector<char> fixed(space->dof_count(), 0);
   for (std::size_t d = 0; d < fixed.size(); d += 3) fixed[d] = 1;
   std::vector<std::vector<double>> found;
-  for (const std::size_t largest : {always, never}) {
-    ContinuousMass mass(space, fixed, 1, largest);
+  for (const MassMethod method : {cholesky, gradients}) {
+    ContinuousMass mass(space, fixed, 1, method);
     const MassSolution s = mass.solve(c, given);
     std::vector<double> gap = space->expand(s.dofs);
     for (std::size_t i = 0; i < gap.size(); ++i) gap[i] = c[i] - gap[i];
@@ -200,13 +200,34 @@ TEST(ContinuousMass, FixedDofsKeepTheirValues) {
   EXPECT_LE(difference(found[0], found[1]), 1e-12 * size(found[0]));
 }
 
+TEST(ContinuousMass, PetscAgreesWhereThereIsPetsc) {
+  const auto space = Space::continuous(grid_mesh(4, 2, 1.0, bend(0.2, 0.15)), 3);
+  if (!is_available(MassMethod::petsc)) {
+    EXPECT_THROW(ContinuousMass(space, {}, 1, MassMethod::petsc), InputError);
+    return;
+  }
+  const std::vector<double> c = random_values(space->coefficient_count(), "petsc");
+  const std::vector<double> given = random_values(space->dof_count(), "given");
+  for (const bool some : {false, true}) {
+    std::vector<char> fixed(some ? space->dof_count() : 0);
+    for (std::size_t d = 0; d < fixed.size(); d += 5) fixed[d] = 1;
+    ContinuousMass ours(space, fixed, 1, gradients);
+    ContinuousMass theirs(space, fixed, 1, MassMethod::petsc);
+    const MassSolution a = ours.solve(c, given);
+    const MassSolution b = theirs.solve(c, given);
+    EXPECT_GT(b.iterations, 0);
+    EXPECT_LE(b.relative_residual, 1e-14);
+    EXPECT_LE(difference(a.dofs, b.dofs), 1e-12 * size(a.dofs));
+  }
+}
+
 TEST(ContinuousMass, SameBitsForAnyNumberOfThreads) {
   const auto space = Space::continuous(grid_mesh(24, 2, 1.0, bend(0.2, 0.15)), 3);
   const std::vector<double> c = random_values(space->coefficient_count(), "threads");
-  ContinuousMass one(space, {}, 1, never);
+  ContinuousMass one(space, {}, 1, gradients);
   const MassSolution a = one.solve(c);
   for (const int threads : {2, 3, 8}) {
-    ContinuousMass several(space, {}, threads, never);
+    ContinuousMass several(space, {}, threads, gradients);
     const MassSolution b = several.solve(c);
     EXPECT_EQ(a.dofs, b.dofs);
     EXPECT_EQ(a.iterations, b.iterations);
