@@ -7,7 +7,10 @@
 #ifdef BEZEL_WITH_PETSC
 #include <petscksp.h>
 
+#include <algorithm>
+#include <array>
 #include <mutex>
+#include <vector>
 
 namespace bezel::detail {
 namespace {
@@ -72,6 +75,16 @@ struct PetscSystem::Impl {
   Mat matrix = nullptr;
   KSP solver = nullptr;
   Vec right = nullptr, x = nullptr;
+
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    KSPDestroy(&solver);
+    VecDestroy(&x);
+    VecDestroy(&right);
+    MatDestroy(&matrix);
+  }
 };
 
 bool PetscSystem::available() {
@@ -93,10 +106,7 @@ PetscSystem::PetscSystem(std::span<const std::int32_t> row_size) : impl_(new Imp
 
 PetscSystem::~PetscSystem() {
   const std::lock_guard lock(one_at_a_time());
-  KSPDestroy(&impl_->solver);
-  VecDestroy(&impl_->x);
-  VecDestroy(&impl_->right);
-  MatDestroy(&impl_->matrix);
+  impl_.reset();
 }
 
 void PetscSystem::add(std::span<const std::int32_t> rows, std::span<const double> block) {
