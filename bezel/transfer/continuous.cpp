@@ -28,37 +28,42 @@ std::vector<double> missing_masses(const ContinuousMass& mass, std::span<const d
   return missing;
 }
 
-/// One component: the dofs, and what is reported.
-MassSolution solve_component(ContinuousMass& mass, std::span<const double> c,
-                             std::span<const double> given, bool keep_boundary, MassSolve& report,
-                             double& max_element_change) {
-  MassSolution solution = mass.solve(c, given);
-  std::vector<double> missing = missing_masses(mass, c, solution.dofs);
-  if (!keep_boundary) {
-    const double shift = sum(missing) / sum(mass.integrals());
-    for (double& x : solution.dofs) x += shift;
-    missing = missing_masses(mass, c, solution.dofs);
-  }
-  report.dofs = solution.dofs.size();
-  report.method = mass.method();
-  report.iterations = solution.iterations;
-  report.relative_residual = solution.relative_residual;
-  report.boundary_mass_change = keep_boundary ? -sum(missing) : 0.0;
-  max_element_change = 0.0;
-  for (const double m : missing) max_element_change = std::max(max_element_change, std::abs(m));
-  return solution;
-}
-
 }  // namespace
+
+ContinuousOutcome make_continuous(ContinuousMass& mass, int components,
+                                  std::span<const double> given, std::span<double> coefficients) {
+  const auto nc = static_cast<std::size_t>(components);
+  const Space& space = *mass.space();
+  ContinuousOutcome outcome;
+  std::vector<double> c(space.coefficient_count());
+  std::vector<double> own(given.size() / nc);
+  for (std::size_t i = 0; i < nc; ++i) {
+    for (std::size_t n = 0; n < c.size(); ++n) c[n] = coefficients[n * nc + i];
+    for (std::size_t d = 0; d < own.size(); ++d) own[d] = given[d * nc + i];
+    MassSolution solution = mass.solve(c, own);
+    std::vector<double> missing = missing_masses(mass, c, solution.dofs);
+    if (given.empty()) {
+      const double shift = sum(missing) / sum(mass.integrals());
+      for (double& x : solution.dofs) x += shift;
+      missing = missing_masses(mass, c, solution.dofs);
+    }
+    double largest = 0.0;
+    for (const double m : missing) largest = std::max(largest, std::abs(m));
+    outcome.max_element_change.push_back(largest);
+    outcome.solve.push_back({solution.dofs.size(), mass.method(), solution.iterations,
+                             solution.relative_residual, given.empty() ? 0.0 : -sum(missing)});
+    const std::vector<double> expanded = space.expand(solution.dofs);
+    for (std::size_t n = 0; n < c.size(); ++n) coefficients[n * nc + i] = expanded[n];
+  }
+  return outcome;
+}
 
 std::vector<ContinuousOutcome> make_continuous(std::span<Group> groups, const OverlayMesh& donor,
                                                const OverlayMesh& target, const FrontSearch& search,
                                                const TransferOptions& options) {
-  std::vector<ContinuousOutcome> outcomes(groups.size());
+  std::vector<ContinuousOutcome> outcomes;
   std::vector<std::unique_ptr<ContinuousMass>> masses;  // one per space
-  for (std::size_t k = 0; k < groups.size(); ++k) {
-    Group& g = groups[k];
-    const auto nc = static_cast<std::size_t>(g.components);
+  for (Group& g : groups) {
     BoundaryValues boundary;
     if (options.keep_boundary)
       boundary = boundary_values(g, donor, target, search, options.uncovered, options.threads);
@@ -69,20 +74,7 @@ std::vector<ContinuousOutcome> make_continuous(std::span<Group> groups, const Ov
                                                         options.threads, options.mass_method));
       known = masses.end() - 1;
     }
-    outcomes[k].solve.resize(nc);
-    outcomes[k].max_element_change.resize(nc);
-    const std::size_t rows = g.continuous_space->coefficient_count();
-    std::vector<double> c(rows);
-    std::vector<double> given(boundary.fixed.size());
-    for (std::size_t i = 0; i < nc; ++i) {
-      for (std::size_t n = 0; n < rows; ++n) c[n] = g.out[n * nc + i];
-      for (std::size_t d = 0; d < given.size(); ++d) given[d] = boundary.values[d * nc + i];
-      const MassSolution solution =
-          solve_component(**known, c, given, options.keep_boundary, outcomes[k].solve[i],
-                          outcomes[k].max_element_change[i]);
-      const std::vector<double> expanded = g.continuous_space->expand(solution.dofs);
-      for (std::size_t n = 0; n < rows; ++n) g.out[n * nc + i] = expanded[n];
-    }
+    outcomes.push_back(make_continuous(**known, g.components, boundary.values, g.out));
     g.target_space = g.continuous_space;
   }
   return outcomes;

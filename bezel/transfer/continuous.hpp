@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bezel/transfer/group.hpp"
+#include "bezel/transfer/mass_solve.hpp"
 #include "bezel/transfer/transfer.hpp"
 
 namespace bezel::detail {
@@ -15,6 +16,13 @@ struct ContinuousOutcome {
   /// Largest over the elements of |mass of the continuous field - mass received|.
   std::vector<double> max_element_change;
 };
+
+/// Replaces coefficients of the elements, shape (coefficient_count, components), by those of the
+/// continuous field nearest in the inner product of `mass`.
+/// @param given  shape (dofs, components): the values of the dofs that `mass` keeps; with any, the
+///               total mass changes, without, it stays
+ContinuousOutcome make_continuous(ContinuousMass& mass, int components,
+                                  std::span<const double> given, std::span<double> coefficients);
 
 /// Replaces the coefficients of each group by those of the nearest continuous field in L2, and its
 /// target space by its continuous_space.

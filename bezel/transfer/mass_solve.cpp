@@ -89,6 +89,11 @@ void divide(std::size_t n, const double* lower, const double* inverse, double* v
   }
 }
 
+[[noreturn]] void fail_at(std::size_t element) {
+  throw NumericsError("triangle " + std::to_string(element) +
+                      ": its mass matrix is not positive definite in double precision");
+}
+
 /// Calls body(begin, end) for ranges of `step` indices below n.
 template <class Body>
 void for_ranges(std::size_t n, std::size_t step, int threads, const Body& body) {
@@ -104,20 +109,24 @@ struct ContinuousMass::Direct {
 };
 
 ContinuousMass::ContinuousMass(std::shared_ptr<const Space> space, std::vector<char> fixed,
-                               int threads, MassMethod method)
+                               int threads, MassMethod method, const Field* weight)
     : space_(std::move(space)),
       fixed_(std::move(fixed)),
       threads_(threads),
       size_(static_cast<std::size_t>(bernstein::triangle_size(space_->uniform_degree()))),
       elements_(space_->mesh()->element_count()),
       blocks_((elements_ + width - 1) / width),
-      straight_(space_->mesh()->degree() == 1),
+      straight_(space_->mesh()->degree() == 1 && !weight),
       method_(method) {
   if (method_ == MassMethod::automatic) {
     method_ = space_->dof_count() <= direct_limit ? MassMethod::cholesky
                                                   : MassMethod::conjugate_gradients;
   }
-  factorise();
+  if (straight_) {
+    factorise_straight();
+  } else {
+    factorise(weight);
+  }
   const std::size_t dofs = space_->dof_count();
   begin_.assign(dofs + 1, 0);
   const auto place = [&](std::size_t e, std::size_t i) {
@@ -149,55 +158,68 @@ ContinuousMass::ContinuousMass(std::shared_ptr<const Space> space, std::vector<c
 
 ContinuousMass::~ContinuousMass() = default;
 
-void ContinuousMass::factorise() {
+/// One factor for all: that of the reference triangle.
+void ContinuousMass::factorise_straight() {
+  const int p = space_->uniform_degree();
+  const TriangleMesh& mesh = *space_->mesh();
+  const std::size_t n = size_;
+  const std::vector<double> exact = bernstein::mass_matrix(p);
+  std::vector<double> reference = exact;
+  cholesky(n, reference);
+  share_.assign(blocks_ * n * width, 0.0);
+  integrals_.resize(elements_ * n);
+  lower_.resize(packed_size(n));
+  inverse_.resize(n * width);
+  scale_.assign(blocks_ * width, 1.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < width; ++k) {
+      for (std::size_t j = 0; j <= i; ++j) lower_[packed(i, j) + k] = reference[i * n + j];
+      inverse_[i * width + k] = 1.0 / reference[i * n + i];
+    }
+  }
+  for (std::size_t e = 0; e < elements_; ++e) {
+    scale_[e] = 2.0 * area(1, mesh.gather(ElementId(e)));
+    if (!(scale_[e] > 0.0)) fail_at(e);
+    for (std::size_t i = 0; i < n; ++i) {
+      share_[(e / width * n + i) * width + e % width] = scale_[e] * exact[i * n + i];
+      integrals_[e * n + i] = 0.5 * scale_[e] / static_cast<double>(n);
+    }
+  }
+}
+
+void ContinuousMass::factorise(const Field* weight) {
   const int p = space_->uniform_degree();
   const TriangleMesh& mesh = *space_->mesh();
   const std::size_t n = size_;
   share_.assign(blocks_ * n * width, 0.0);
   integrals_.resize(elements_ * n);
-  std::vector<double> reference = bernstein::mass_matrix(p);
-  if (straight_) {
-    cholesky(n, reference);
-    lower_.resize(packed_size(n));
-    inverse_.resize(n * width);
-    scale_.assign(blocks_ * width, 1.0);
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t k = 0; k < width; ++k) {
-        for (std::size_t j = 0; j <= i; ++j) lower_[packed(i, j) + k] = reference[i * n + j];
-        inverse_[i * width + k] = 1.0 / reference[i * n + i];
-      }
-    }
-    const std::vector<double> exact = bernstein::mass_matrix(p);
-    for (std::size_t e = 0; e < elements_; ++e) {
-      scale_[e] = 2.0 * area(1, mesh.gather(ElementId(e)));
-      if (!(scale_[e] > 0.0)) {
-        throw NumericsError(
-            "triangle " + std::to_string(e) +
-            ": its mass matrix is not positive definite (the area is not positive)");
-      }
-      for (std::size_t i = 0; i < n; ++i) {
-        share_[(e / width * n + i) * width + e % width] = scale_[e] * exact[i * n + i];
-        integrals_[e * n + i] = 0.5 * scale_[e] / static_cast<double>(n);
-      }
-    }
-    return;
+  int degree = 2 * p + 2 * (mesh.degree() - 1);
+  if (weight) {
+    const Space& own = weight->space();
+    degree += own.highest_degree() * (own.basis() == Basis::physical ? mesh.degree() : 1);
   }
-  const MassRule rule = make_mass_rule(mesh.degree(), 2 * p + 2 * (mesh.degree() - 1));
+  const MassRule rule = make_mass_rule(mesh.degree(), degree);
   const std::size_t points = rule.weight.size();
   std::vector<double> phi(points * n);
-  for (std::size_t q = 0; q < points; ++q)
-    basis_at(p, rule.place[q][0], rule.place[q][1], phi.data() + q * n);
+  std::vector<Lambda> lambda(points);
+  for (std::size_t q = 0; q < points; ++q) {
+    const auto& at = rule.place[q];
+    basis_at(p, at[0], at[1], phi.data() + q * n);
+    lambda[q] = {1.0 - at[0] - at[1], at[0], at[1]};
+  }
   lower_.assign(blocks_ * packed_size(n), 0.0);
   inverse_.assign(blocks_ * n * width, 1.0);
   for_ranges(elements_, blocks_per_task * width, threads_, [&](std::size_t from, std::size_t to) {
     std::vector<double> matrix(n * n);
+    std::vector<double> factor(points, 1.0);
     std::vector<Vec2> control(static_cast<std::size_t>(mesh.nodes_per_element()));
     for (std::size_t e = from; e < to; ++e) {
       mesh.gather(ElementId(e), control);
+      if (weight) weight->evaluate(ElementId(e), lambda, factor);
       std::fill(matrix.begin(), matrix.end(), 0.0);
       double* integral = integrals_.data() + e * n;
       for (std::size_t q = 0; q < points; ++q) {
-        const double w = rule.weight[q] * mass_point(rule, control, q).det;
+        const double w = rule.weight[q] * mass_point(rule, control, q).det * factor[q];
         const double* at = phi.data() + q * n;
         for (std::size_t i = 0; i < n; ++i) {
           const double wi = w * at[i];
@@ -208,10 +230,7 @@ void ContinuousMass::factorise() {
       const std::size_t lane = e % width;
       for (std::size_t i = 0; i < n; ++i)
         share_[(e / width * n + i) * width + lane] = matrix[i * n + i];
-      if (!cholesky(n, matrix)) {
-        throw NumericsError("triangle " + std::to_string(e) +
-                            ": its mass matrix is not positive definite in double precision");
-      }
+      if (!cholesky(n, matrix)) fail_at(e);
       double* lower = lower_.data() + e / width * packed_size(n) + lane;
       for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t j = 0; j <= i; ++j) lower[packed(i, j)] = matrix[i * n + j];

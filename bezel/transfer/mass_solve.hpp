@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "bezel/field/space.hpp"
+#include "bezel/field/field.hpp"
 #include "bezel/transfer/petsc_system.hpp"
 #include "bezel/transfer/transfer.hpp"
 
@@ -28,15 +28,17 @@ struct MassSolution {
 ///
 /// All sums run in an order that depends on the mesh alone: same bits for any number of threads.
 /// Memory per element with n = triangle_size(degree) coefficients: 8 n (n + 1) / 2 bytes for L_e
-/// (none on straight meshes, which share one), 28 n for the rest.
+/// (none on straight meshes without weight, which share one), 28 n for the rest.
 class ContinuousMass {
  public:
   /// @param space  continuous
   /// @param fixed  empty, or per dof whether solve() keeps its value instead of solving for it
+  /// @param weight  positive, of one component, on the same mesh: M_e holds integrals of weight phi
+  ///                phi; null: 1
   /// @throws NumericsError naming the triangle when a mass matrix is not positive definite;
   ///         InputError for petsc in a build without it
   ContinuousMass(std::shared_ptr<const Space> space, std::vector<char> fixed, int threads,
-                 MassMethod method = MassMethod::automatic);
+                 MassMethod method = MassMethod::automatic, const Field* weight = nullptr);
   ~ContinuousMass();
   ContinuousMass(const ContinuousMass&) = delete;
   ContinuousMass& operator=(const ContinuousMass&) = delete;
@@ -45,7 +47,7 @@ class ContinuousMass {
   MassMethod method() const { return method_; }  ///< the one used, not automatic
   /// Element e's mass matrix, row major.
   void element_matrix(std::size_t e, std::span<double> out) const;
-  /// Integrals of the elements' basis functions, as the factors have them: shape
+  /// Integrals of the elements' basis functions (times the weight), as the factors have them: shape
   /// (coefficient_count).
   const std::vector<double>& integrals() const { return integrals_; }
 
@@ -67,7 +69,8 @@ class ContinuousMass {
  private:
   template <class Source, class Work>
   void by_elements(const Source& source, const Work& work, std::span<double> y);
-  void factorise();
+  void factorise_straight();
+  void factorise(const Field* weight);
   void assemble_cholesky();
   void assemble_petsc();
   void multiply_block(std::size_t block, double* v) const;

@@ -207,6 +207,34 @@ TEST(ContinuousTransfer, PartialCover) {
   }
 }
 
+// A hole in both meshes, cut in different ways.
+TEST(ContinuousTransfer, AroundAHole) {
+  GenerateOptions how;
+  how.degree = 3;
+  how.size = 0.45;
+  how.seed = 3;
+  const auto donor = std::make_shared<const TriangleMesh>(generate_annulus(0.5, 1.0, how));
+  how.size = 0.35;
+  how.seed = 4;
+  const auto target = std::make_shared<const TriangleMesh>(generate_annulus(0.5, 1.0, how));
+  const Formula constant("3.25");
+  const Formula wave("2 + x*y");
+  const std::vector<Field> fields = {
+      make_donor(donor, Kind::discontinuous_physical, 2, constant, "constant"),
+      make_donor(donor, Kind::discontinuous_physical, 2, wave, "wave")};
+  for (const bool keep_boundary : {false, true}) {
+    TransferOptions options = to_continuous(3);
+    options.uncovered = Uncovered::extend;
+    options.keep_boundary = keep_boundary;
+    const TransferResult result = transfer(fields, target, options);
+    EXPECT_LE(error_norms(result.fields[0], one(constant)).max, 3.25e-13);
+    EXPECT_LE(error_norms(result.fields[1], one(wave)).max, 1e-2);
+    EXPECT_LE(result.report.fields[0].relative_mass_defect, 1e-14);
+    EXPECT_EQ(result.report.fields[1].relative_mass_defect > 1e-14, keep_boundary);
+    EXPECT_LE(result.report.fields[1].relative_mass_defect, 1e-3);
+  }
+}
+
 // A physical polynomial is known exactly at the nodes of the boundary.
 TEST(ContinuousTransfer, KeepsTheBoundary) {
   const Formula poly("1 + x^2 - 2*x*y + 3*y");

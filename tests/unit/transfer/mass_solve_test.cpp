@@ -79,6 +79,34 @@ TEST(ContinuousMass, ElementMatricesGiveTheNorm) {
   }
 }
 
+TEST(ContinuousMass, WeightedMatricesGiveWeightedIntegrals) {
+  const Formula weight("2 + x - 0.5*y + 0.3*x*y");
+  for (int g = 1; g <= 3; ++g) {
+    const auto mesh = grid_mesh(3, g, 1.0, bend(0.2, 0.15));
+    const Field w = project("w", Space::discontinuous(mesh, 2, Basis::physical), {&weight, 1});
+    ContinuousMass mass(Space::continuous(mesh, 2), {}, 1, gradients, &w);
+    double total = 0.0;
+    for (const double i : mass.integrals()) total += i;
+    EXPECT_NEAR(total, integral(w)[0], 1e-13);
+    // f = r . (1, 2) in physical coordinates is in the space when the elements are straight.
+    if (g > 1) continue;
+    const Formula f("x + 2*y");
+    const Formula product("(2 + x - 0.5*y + 0.3*x*y) * (x + 2*y)^2");
+    const Field values = sample("f", Space::discontinuous(mesh, 2), {&f, 1});
+    const auto c = values.coefficients();
+    std::vector<double> matrix(36);
+    double squared = 0.0;
+    for (std::size_t e = 0; e < mesh->element_count(); ++e) {
+      mass.element_matrix(e, matrix);
+      for (std::size_t i = 0; i < 6; ++i)
+        for (std::size_t j = 0; j < 6; ++j)
+          squared += matrix[i * 6 + j] * c[e * 6 + i] * c[e * 6 + j];
+    }
+    EXPECT_NEAR(squared, integral(project("p", Space::discontinuous(mesh, 4), {&product, 1}))[0],
+                1e-13);
+  }
+}
+
 TEST(ContinuousMass, LoadAndApplyAreTheAssembledMatrix) {
   for (const int g : {1, 2, 3}) {
     for (const int p : {1, 2, 3, 4}) {
@@ -153,6 +181,26 @@ TEST(ContinuousMass, StepsDoNotGrowWithTheMesh) {
     }
     EXPECT_LE(steps[2], steps[0] + 3) << "degree " << p;
     EXPECT_LE(steps[2], 50) << "degree " << p;
+  }
+}
+
+// Neighbours that differ six times in size, elements that differ 200000 times.
+TEST(ContinuousMass, StepsDoNotGrowOnGradedMeshes) {
+  const auto grade = [](double t) {
+    return (std::exp(14.0 * (t + 1) / 2) - 1) / (std::exp(14.0) - 1);
+  };
+  for (int p = 1; p <= 4; ++p) {
+    const auto mesh = grid_mesh(8, 1, 1.0, [&](const Vec2& x) {
+      return Vec2{{grade(x[0]), x[1]}};
+    });
+    const auto space = Space::continuous(mesh, p);
+    const std::vector<double> c = random_values(space->coefficient_count(), "graded");
+    ContinuousMass direct(space, {}, 1, cholesky);
+    ContinuousMass iterative(space, {}, 1, gradients);
+    const MassSolution a = direct.solve(c);
+    const MassSolution b = iterative.solve(c);
+    EXPECT_LE(b.iterations, 50) << "degree " << p;
+    for (std::size_t d = 0; d < a.dofs.size(); ++d) EXPECT_NEAR(a.dofs[d], b.dofs[d], 1e-11);
   }
 }
 
