@@ -8,11 +8,7 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/base/parallel.hpp"
-#include "bezel/bernstein/triangle.hpp"
 #include "bezel/field/mass_kernel.hpp"
-#include "bezel/geometry/triangle.hpp"
-#include "bezel/transfer/accumulate.hpp"
-#include "bezel/transfer/mass_rule.hpp"
 
 namespace bezel {
 
@@ -25,8 +21,7 @@ bool is_available(MassMethod method) {
 namespace bezel::detail {
 namespace {
 
-/// Elements worked on together, one to a lane of the loops below.
-constexpr std::size_t width = 8;
+constexpr std::size_t width = ElementFactors::width;
 constexpr std::size_t blocks_per_task = 32;
 constexpr std::size_t dofs_per_task = 2048;
 
@@ -35,64 +30,6 @@ constexpr double aim = 2e-16;
 constexpr double accept = 1e-12;
 constexpr int max_steps = 2000;
 constexpr int max_rounds = 4;
-
-constexpr std::size_t packed(std::size_t i, std::size_t j) {
-  return (i * (i + 1) / 2 + j) * width;
-}
-constexpr std::size_t packed_size(std::size_t n) {
-  return n * (n + 1) / 2 * width;
-}
-
-/// v = L L^T v for the elements of a block; v has shape (n, width).
-void multiply(std::size_t n, const double* lower, double* v) {
-  for (std::size_t j = 0; j < n; ++j) {
-    double* vj = v + j * width;
-    const double* diagonal = lower + packed(j, j);
-    for (std::size_t k = 0; k < width; ++k) vj[k] *= diagonal[k];
-    for (std::size_t i = j + 1; i < n; ++i) {
-      const double* l = lower + packed(i, j);
-      const double* vi = v + i * width;
-      for (std::size_t k = 0; k < width; ++k) vj[k] += l[k] * vi[k];
-    }
-  }
-  for (std::size_t i = n; i-- > 0;) {
-    double* vi = v + i * width;
-    const double* diagonal = lower + packed(i, i);
-    for (std::size_t k = 0; k < width; ++k) vi[k] *= diagonal[k];
-    for (std::size_t j = 0; j < i; ++j) {
-      const double* l = lower + packed(i, j);
-      const double* vj = v + j * width;
-      for (std::size_t k = 0; k < width; ++k) vi[k] += l[k] * vj[k];
-    }
-  }
-}
-
-/// v = (L L^T)^-1 v.
-void divide(std::size_t n, const double* lower, const double* inverse, double* v) {
-  for (std::size_t i = 0; i < n; ++i) {
-    double* vi = v + i * width;
-    for (std::size_t j = 0; j < i; ++j) {
-      const double* l = lower + packed(i, j);
-      const double* vj = v + j * width;
-      for (std::size_t k = 0; k < width; ++k) vi[k] -= l[k] * vj[k];
-    }
-    for (std::size_t k = 0; k < width; ++k) vi[k] *= inverse[i * width + k];
-  }
-  for (std::size_t j = n; j-- > 0;) {
-    double* vj = v + j * width;
-    for (std::size_t i = j + 1; i < n; ++i) {
-      const double* l = lower + packed(i, j);
-      const double* vi = v + i * width;
-      for (std::size_t k = 0; k < width; ++k) vj[k] -= l[k] * vi[k];
-    }
-    for (std::size_t k = 0; k < width; ++k) vj[k] *= inverse[j * width + k];
-  }
-}
-
-[[noreturn]] void fail_at(std::size_t element) {
-  throw NumericsError("triangle " + std::to_string(element) +
-                      ": its mass matrix is not positive definite in double precision");
-}
 
 /// Calls body(begin, end) for ranges of `step` indices below n.
 template <class Body>
@@ -113,25 +50,16 @@ ContinuousMass::ContinuousMass(std::shared_ptr<const Space> space, std::vector<c
     : space_(std::move(space)),
       fixed_(std::move(fixed)),
       threads_(threads),
-      size_(static_cast<std::size_t>(bernstein::triangle_size(space_->uniform_degree()))),
-      elements_(space_->mesh()->element_count()),
-      blocks_((elements_ + width - 1) / width),
-      straight_(space_->mesh()->degree() == 1 && !weight),
+      factors_(*space_, weight, threads),
+      size_(factors_.size()),
+      elements_(factors_.element_count()),
       method_(method) {
   if (method_ == MassMethod::automatic) {
     method_ = space_->dof_count() <= direct_limit ? MassMethod::cholesky
                                                   : MassMethod::conjugate_gradients;
   }
-  if (straight_) {
-    factorise_straight();
-  } else {
-    factorise(weight);
-  }
   const std::size_t dofs = space_->dof_count();
   begin_.assign(dofs + 1, 0);
-  const auto place = [&](std::size_t e, std::size_t i) {
-    return (e / width * size_ + i) * width + e % width;
-  };
   for (std::size_t e = 0; e < elements_; ++e)
     for (const std::int32_t d : space_->dofs(ElementId(e)))
       ++begin_[static_cast<std::size_t>(d) + 1];
@@ -141,9 +69,10 @@ ContinuousMass::ContinuousMass(std::shared_ptr<const Space> space, std::vector<c
   for (std::size_t e = 0; e < elements_; ++e) {
     const auto own = space_->dofs(ElementId(e));
     for (std::size_t i = 0; i < size_; ++i)
-      entry_[next[static_cast<std::size_t>(own[i])]++] = static_cast<std::uint32_t>(place(e, i));
+      entry_[next[static_cast<std::size_t>(own[i])]++] =
+          static_cast<std::uint32_t>(factors_.place(e, i));
   }
-  // The shares so far hold the diagonals of the element matrices.
+  share_ = factors_.diagonal();
   for_ranges(dofs, dofs_per_task, threads_, [&](std::size_t from, std::size_t to) {
     for (std::size_t d = from; d < to; ++d) {
       double sum = 0.0;
@@ -151,121 +80,28 @@ ContinuousMass::ContinuousMass(std::shared_ptr<const Space> space, std::vector<c
       for (std::size_t k = begin_[d]; k < begin_[d + 1]; ++k) share_[entry_[k]] /= sum;
     }
   });
-  local_.resize(blocks_ * size_ * width);
+  local_.resize(share_.size());
   if (method_ == MassMethod::cholesky) assemble_cholesky();
   if (method_ == MassMethod::petsc) assemble_petsc();
 }
 
 ContinuousMass::~ContinuousMass() = default;
 
-/// One factor for all: that of the reference triangle.
-void ContinuousMass::factorise_straight() {
-  const int p = space_->uniform_degree();
-  const TriangleMesh& mesh = *space_->mesh();
-  const std::size_t n = size_;
-  const std::vector<double> exact = bernstein::mass_matrix(p);
-  std::vector<double> reference = exact;
-  cholesky(n, reference);
-  share_.assign(blocks_ * n * width, 0.0);
-  integrals_.resize(elements_ * n);
-  lower_.resize(packed_size(n));
-  inverse_.resize(n * width);
-  scale_.assign(blocks_ * width, 1.0);
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t k = 0; k < width; ++k) {
-      for (std::size_t j = 0; j <= i; ++j) lower_[packed(i, j) + k] = reference[i * n + j];
-      inverse_[i * width + k] = 1.0 / reference[i * n + i];
-    }
-  }
-  for (std::size_t e = 0; e < elements_; ++e) {
-    scale_[e] = 2.0 * area(1, mesh.gather(ElementId(e)));
-    if (!(scale_[e] > 0.0)) fail_at(e);
-    for (std::size_t i = 0; i < n; ++i) {
-      share_[(e / width * n + i) * width + e % width] = scale_[e] * exact[i * n + i];
-      integrals_[e * n + i] = 0.5 * scale_[e] / static_cast<double>(n);
-    }
-  }
-}
-
-void ContinuousMass::factorise(const Field* weight) {
-  const int p = space_->uniform_degree();
-  const TriangleMesh& mesh = *space_->mesh();
-  const std::size_t n = size_;
-  share_.assign(blocks_ * n * width, 0.0);
-  integrals_.resize(elements_ * n);
-  int degree = 2 * p + 2 * (mesh.degree() - 1);
-  if (weight) {
-    const Space& own = weight->space();
-    degree += own.highest_degree() * (own.basis() == Basis::physical ? mesh.degree() : 1);
-  }
-  const MassRule rule = make_mass_rule(mesh.degree(), degree);
-  const std::size_t points = rule.weight.size();
-  std::vector<double> phi(points * n);
-  std::vector<Lambda> lambda(points);
-  for (std::size_t q = 0; q < points; ++q) {
-    const auto& at = rule.place[q];
-    basis_at(p, at[0], at[1], phi.data() + q * n);
-    lambda[q] = {1.0 - at[0] - at[1], at[0], at[1]};
-  }
-  lower_.assign(blocks_ * packed_size(n), 0.0);
-  inverse_.assign(blocks_ * n * width, 1.0);
-  for_ranges(elements_, blocks_per_task * width, threads_, [&](std::size_t from, std::size_t to) {
-    std::vector<double> matrix(n * n);
-    std::vector<double> factor(points, 1.0);
-    std::vector<Vec2> control(static_cast<std::size_t>(mesh.nodes_per_element()));
-    for (std::size_t e = from; e < to; ++e) {
-      mesh.gather(ElementId(e), control);
-      if (weight) weight->evaluate(ElementId(e), lambda, factor);
-      std::fill(matrix.begin(), matrix.end(), 0.0);
-      double* integral = integrals_.data() + e * n;
-      for (std::size_t q = 0; q < points; ++q) {
-        const double w = rule.weight[q] * mass_point(rule, control, q).det * factor[q];
-        const double* at = phi.data() + q * n;
-        for (std::size_t i = 0; i < n; ++i) {
-          const double wi = w * at[i];
-          integral[i] += wi;
-          for (std::size_t j = 0; j <= i; ++j) matrix[i * n + j] += wi * at[j];
-        }
-      }
-      const std::size_t lane = e % width;
-      for (std::size_t i = 0; i < n; ++i)
-        share_[(e / width * n + i) * width + lane] = matrix[i * n + i];
-      if (!cholesky(n, matrix)) fail_at(e);
-      double* lower = lower_.data() + e / width * packed_size(n) + lane;
-      for (std::size_t i = 0; i < n; ++i) {
-        for (std::size_t j = 0; j <= i; ++j) lower[packed(i, j)] = matrix[i * n + j];
-        inverse_[(e / width * n + i) * width + lane] = 1.0 / matrix[i * n + i];
-      }
-    }
-  });
-}
-
-void ContinuousMass::element_matrix(std::size_t e, std::span<double> out) const {
-  const double* lower =
-      lower_.data() + (straight_ ? 0 : e / width * packed_size(size_)) + e % width;
-  const double scale = straight_ ? scale_[e] : 1.0;
-  for (std::size_t i = 0; i < size_; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      double sum = 0.0;
-      for (std::size_t k = 0; k <= j; ++k) sum += lower[packed(i, k)] * lower[packed(j, k)];
-      out[i * size_ + j] = out[j * size_ + i] = sum * scale;
-    }
-  }
-}
-
 /// y = sum over elements of A_e^T work(source of element e): source(e, i) gives coefficient i,
 /// work(block, v) changes the coefficients of a block of elements.
 template <class Source, class Work>
 void ContinuousMass::by_elements(const Source& source, const Work& work, std::span<double> y) {
-  for_ranges(blocks_, blocks_per_task, threads_, [&](std::size_t from, std::size_t to) {
-    for (std::size_t b = from; b < to; ++b) {
-      double* v = local_.data() + b * size_ * width;
-      for (std::size_t lane = 0; lane < width && b * width + lane < elements_; ++lane) {
-        for (std::size_t i = 0; i < size_; ++i) v[i * width + lane] = source(b * width + lane, i);
-      }
-      work(b, v);
-    }
-  });
+  for_ranges(factors_.block_count(), blocks_per_task, threads_,
+             [&](std::size_t from, std::size_t to) {
+               for (std::size_t b = from; b < to; ++b) {
+                 double* v = local_.data() + b * size_ * width;
+                 for (std::size_t lane = 0; lane < width && b * width + lane < elements_; ++lane) {
+                   for (std::size_t i = 0; i < size_; ++i)
+                     v[i * width + lane] = source(b * width + lane, i);
+                 }
+                 work(b, v);
+               }
+             });
   for_ranges(space_->dof_count(), dofs_per_task, threads_, [&](std::size_t from, std::size_t to) {
     for (std::size_t d = from; d < to; ++d) {
       double sum = 0.0;
@@ -275,24 +111,16 @@ void ContinuousMass::by_elements(const Source& source, const Work& work, std::sp
   });
 }
 
-void ContinuousMass::multiply_block(std::size_t block, double* v) const {
-  multiply(size_, lower_.data() + (straight_ ? 0 : block * packed_size(size_)), v);
-  if (!straight_) return;
-  const double* scale = scale_.data() + block * width;
-  for (std::size_t i = 0; i < size_; ++i)
-    for (std::size_t k = 0; k < width; ++k) v[i * width + k] *= scale[k];
-}
-
 void ContinuousMass::load(std::span<const double> c, std::span<double> y) {
   by_elements([&](std::size_t e, std::size_t i) { return c[e * size_ + i]; },
-              [&](std::size_t b, double* v) { multiply_block(b, v); }, y);
+              [&](std::size_t b, double* v) { factors_.multiply(b, v); }, y);
 }
 
 void ContinuousMass::apply(std::span<const double> x, std::span<double> y) {
   const std::int32_t* dofs = space_->dofs(ElementId(0)).data();
   by_elements([&](std::size_t e,
                   std::size_t i) { return x[static_cast<std::size_t>(dofs[e * size_ + i])]; },
-              [&](std::size_t b, double* v) { multiply_block(b, v); }, y);
+              [&](std::size_t b, double* v) { factors_.multiply(b, v); }, y);
 }
 
 void ContinuousMass::precondition(std::span<const double> r, std::span<double> z) {
@@ -302,13 +130,7 @@ void ContinuousMass::precondition(std::span<const double> r, std::span<double> z
               [&](std::size_t b, double* v) {
                 const double* share = share_.data() + b * size_ * width;
                 for (std::size_t i = 0; i < size_ * width; ++i) v[i] *= share[i];
-                divide(size_, lower_.data() + (straight_ ? 0 : b * packed_size(size_)),
-                       inverse_.data() + (straight_ ? 0 : b * size_ * width), v);
-                if (straight_) {
-                  for (std::size_t i = 0; i < size_; ++i)
-                    for (std::size_t k = 0; k < width; ++k)
-                      v[i * width + k] /= scale_[b * width + k];
-                }
+                factors_.divide(b, v);
                 for (std::size_t i = 0; i < size_ * width; ++i) v[i] *= share[i];
               },
               z);
@@ -362,7 +184,7 @@ void ContinuousMass::assemble_cholesky() {
     return !fixed_.empty() && fixed_[static_cast<std::size_t>(d)];
   };
   for (std::size_t e = 0; e < elements_; ++e) {
-    element_matrix(e, matrix);
+    factors_.matrix(e, matrix);
     const auto own = space_->dofs(ElementId(e));
     for (std::size_t i = 0; i < size_; ++i) {
       for (std::size_t j = 0; j < size_; ++j) {
@@ -387,7 +209,7 @@ void ContinuousMass::assemble_petsc() {
   std::vector<double> matrix(size_ * size_);
   std::vector<std::int32_t> rows(size_);
   for (std::size_t e = 0; e < elements_; ++e) {
-    element_matrix(e, matrix);
+    factors_.matrix(e, matrix);
     const auto own = space_->dofs(ElementId(e));
     for (std::size_t i = 0; i < size_; ++i)
       rows[i] = is_fixed(static_cast<std::size_t>(own[i])) ? -1 : own[i];

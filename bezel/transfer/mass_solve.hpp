@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bezel/field/field.hpp"
+#include "bezel/transfer/element_factors.hpp"
 #include "bezel/transfer/petsc_system.hpp"
 #include "bezel/transfer/transfer.hpp"
 
@@ -27,8 +28,7 @@ struct MassSolution {
 /// Cholesky factor M_e = L_e L_e^T per element, never assembled but for small spaces.
 ///
 /// All sums run in an order that depends on the mesh alone: same bits for any number of threads.
-/// Memory per element with n = triangle_size(degree) coefficients: 8 n (n + 1) / 2 bytes for L_e
-/// (none on straight meshes without weight, which share one), 28 n for the rest.
+/// Memory per element of n coefficients: that of ElementFactors, and 28 n bytes.
 class ContinuousMass {
  public:
   /// @param space  continuous
@@ -46,10 +46,10 @@ class ContinuousMass {
   const std::shared_ptr<const Space>& space() const { return space_; }
   MassMethod method() const { return method_; }  ///< the one used, not automatic
   /// Element e's mass matrix, row major.
-  void element_matrix(std::size_t e, std::span<double> out) const;
+  void element_matrix(std::size_t e, std::span<double> out) const { factors_.matrix(e, out); }
   /// Integrals of the elements' basis functions (times the weight), as the factors have them: shape
   /// (coefficient_count).
-  const std::vector<double>& integrals() const { return integrals_; }
+  const std::vector<double>& integrals() const { return factors_.integrals(); }
 
   /// y = A^T M c for coefficients c of the elements.
   void load(std::span<const double> c, std::span<double> y);
@@ -69,11 +69,8 @@ class ContinuousMass {
  private:
   template <class Source, class Work>
   void by_elements(const Source& source, const Work& work, std::span<double> y);
-  void factorise_straight();
-  void factorise(const Field* weight);
   void assemble_cholesky();
   void assemble_petsc();
-  void multiply_block(std::size_t block, double* v) const;
   void mask(std::vector<double>& v) const;
   std::vector<double> residual(std::span<const double> c, std::span<const double> x);
   int conjugate_gradients(std::vector<double> r, double smallest, std::span<double> x);
@@ -83,14 +80,10 @@ class ContinuousMass {
   std::shared_ptr<const Space> space_;
   std::vector<char> fixed_;
   int threads_;
-  std::size_t size_, elements_, blocks_;
-  bool straight_;
+  ElementFactors factors_;
+  std::size_t size_, elements_;
   MassMethod method_;
-  std::vector<double> lower_;    ///< per block of elements: packed factor, lane by lane
-  std::vector<double> inverse_;  ///< reciprocals of the factor's diagonal, the same way
-  std::vector<double> scale_;    ///< straight meshes: twice the area of each element
-  std::vector<double> share_;    ///< W_e, in the order of local_
-  std::vector<double> integrals_;
+  std::vector<double> share_;         ///< W_e, in the order of local_
   std::vector<std::size_t> begin_;    ///< per dof, where its entries start
   std::vector<std::uint32_t> entry_;  ///< places in local_
   std::vector<double> local_, partial_;
