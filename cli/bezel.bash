@@ -23,6 +23,7 @@ _bezel() {
       --newton) words='basic accurate full triple' ;;
       --basis) words='reference physical' ;;
       --continuity) words='dg cg' ;;
+      --mass-method) words='auto cholesky conjugate_gradients petsc' ;;
       --uncovered) words='error extend zero' ;;
       --pattern) words='structured unstructured' ;;
       --colormap) words='viridis cividis coolwarm grey' ;;

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -23,8 +24,21 @@ struct TransferCommand {
   std::optional<int> degree;
   Basis basis = Basis::reference;
   CLI::Option* basis_given = nullptr;
+  bool keep_boundary = false;
+  std::string mass_method = "auto";
   std::optional<Format> format;
 };
+
+constexpr std::array<const char*, 4> method_names = {"auto", "cholesky", "conjugate_gradients",
+                                                     "petsc"};
+const char* method_name(MassMethod method) {
+  return method_names[static_cast<std::size_t>(method)];
+}
+
+MassMethod method_named(const std::string& name) {
+  const auto at = std::find(method_names.begin(), method_names.end(), name);
+  return static_cast<MassMethod>(at - method_names.begin());
+}
 
 Json to_json(const TransferCommand& options, const TransferReport& r) {
   Json fields = Json::array();
@@ -44,6 +58,13 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
                       {"max_before", f.max_before},
                       {"min", f.min_after},
                       {"max", f.max_after}});
+    if (!f.mass_solve) continue;
+    const MassSolve& solve = *f.mass_solve;
+    fields.back()["mass_solve"] = {{"dofs", solve.dofs},
+                                   {"method", method_name(solve.method)},
+                                   {"iterations", solve.iterations},
+                                   {"relative_residual", solve.relative_residual},
+                                   {"boundary_mass_change", solve.boundary_mass_change}};
   }
   Json uncovered = Json::array();
   for (const auto& part : r.uncovered_elements)
@@ -72,7 +93,7 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
                 {"solve", r.seconds.solve}}}};
 }
 
-std::string to_table(const TransferReport& r) {
+std::string to_table(const TransferReport& r, bool keep_boundary) {
   std::size_t width = 5;
   const auto label = [](const FieldReport& f, bool several) {
     return several ? fmt::format("{}[{}]", f.name, f.component) : f.name;
@@ -96,6 +117,19 @@ std::string to_table(const TransferReport& r) {
   text +=
       fmt::format("overlay: {} pairs, {} crossings, {} tangencies, {} overlaps, {} unresolved\n",
                   r.pairs, r.crossings, r.tangencies, r.overlaps, r.unresolved);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (!r.fields[i].mass_solve) continue;
+    const MassSolve& solve = *r.fields[i].mass_solve;
+    text += fmt::format("{:<{}}  {} degrees of freedom, {}, residual {:.1e}", labels[i], width,
+                        solve.dofs,
+                        solve.method == MassMethod::cholesky
+                            ? std::string("sparse Cholesky")
+                            : counted(static_cast<std::size_t>(solve.iterations), "iteration"),
+                        solve.relative_residual);
+    if (keep_boundary)
+      text += fmt::format(", mass changed by {:.3g} for the boundary", solve.boundary_mass_change);
+    text += "\n";
+  }
   text += fmt::format("largest partition residual {:.1e}, largest joint gap {:.1e}\n",
                       r.max_partition_residual, r.max_joint_gap);
   if (r.uncovered_area > 0) {
@@ -127,7 +161,24 @@ void write_both(const TransferCommand& options, const Dataset& data, const Write
   }
 }
 
+void check_usage(const TransferCommand& options) {
+  if (options.continuity != "cg") {
+    if (options.keep_boundary) throw UsageError("--keep-boundary needs --continuity cg");
+    if (options.mass_method != "auto") throw UsageError("--mass-method needs --continuity cg");
+    return;
+  }
+  if (options.basis_given->count() > 0 && options.basis == Basis::physical) {
+    throw UsageError(
+        "--basis physical: not with --continuity cg: along a curved edge a polynomial in x and y "
+        "has a higher degree than the edge has coefficients");
+  }
+  if (options.degree == 0) throw UsageError("--degree 0: --continuity cg needs at least 1");
+  if (!is_available(method_named(options.mass_method)))
+    throw UsageError("--mass-method petsc: this build of bezel has no PETSc");
+}
+
 int run(const TransferCommand& options, const Context& context) {
+  check_usage(options);
   WriteOptions how;
   how.format = options.format ? options.format : format_of(options.out);
   require_writable(options.out);
@@ -154,6 +205,10 @@ int run(const TransferCommand& options, const Context& context) {
   how_to.uncovered = options.uncovered == "extend" ? Uncovered::extend
                      : options.uncovered == "zero" ? Uncovered::zero
                                                    : Uncovered::error;
+  how_to.continuity =
+      options.continuity == "cg" ? Continuity::continuous : Continuity::discontinuous;
+  how_to.keep_boundary = options.keep_boundary;
+  how_to.mass_method = method_named(options.mass_method);
   how_to.threads = context.threads;
   TransferResult result;
   {
@@ -164,7 +219,9 @@ int run(const TransferCommand& options, const Context& context) {
       throw InputError(InputPlace{options.target, 0, {}, -1},
                        std::string(error.what()) + " (--uncovered)");
     } catch (const InputError& error) {
-      throw error.in_file(error.message().find("donor mesh") == 0 ? options.donor : options.target);
+      const bool donors =
+          error.message().find("donor mesh") == 0 || error.message().find("transfer: field") == 0;
+      throw error.in_file(donors ? options.donor : options.target);
     }
   }
   Dataset moved;
@@ -175,7 +232,8 @@ int run(const TransferCommand& options, const Context& context) {
   write_both(options, moved, how, report, context);
   std::vector<std::string> files = {options.out};
   if (!options.report.empty()) files.push_back(options.report);
-  print_or_remove(context.json ? to_text(report) : to_table(result.report), files);
+  print_or_remove(context.json ? to_text(report) : to_table(result.report, options.keep_boundary),
+                  files);
   if (!context.json && context.verbose > 0) {
     const auto& s = result.report.seconds;
     note(context, fmt::format("{:.3g} s: overlay {:.3g}, integrate {:.3g}, solve {:.3g}", s.total,
@@ -207,9 +265,21 @@ void add_transfer(CLI::App& app, Context& context) {
   o.basis_given = add_basis_option(
       *command, o.basis,
       "reference (mapped) or physical (polynomials in x and y); default: each field's own");
-  command->add_option("--continuity", o.continuity, "dg: the new fields are discontinuous")
-      ->check(CLI::IsMember({"dg"}))
+  command
+      ->add_option("--continuity", o.continuity,
+                   "dg: the new fields are discontinuous; cg: continuous (reference basis)")
+      ->check(CLI::IsMember({"dg", "cg"}))
       ->type_name("CONTINUITY")
+      ->capture_default_str();
+  command->add_flag(
+      "--keep-boundary", o.keep_boundary,
+      "With --continuity cg: the boundary takes the donor's values; mass changes a little");
+  command
+      ->add_option("--mass-method", o.mass_method,
+                   "With --continuity cg: auto, cholesky, conjugate_gradients, or petsc in builds "
+                   "that have it")
+      ->check(CLI::IsMember(std::vector<std::string>(method_names.begin(), method_names.end())))
+      ->type_name("METHOD")
       ->capture_default_str();
   command
       ->add_option("--uncovered", o.uncovered,

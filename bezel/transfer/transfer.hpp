@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,12 +21,37 @@ enum class Uncovered {
   zero     ///< the field counts as zero there
 };
 
+/// How the global mass system of a continuous target is solved.
+enum class MassMethod {
+  automatic,            ///< of the two below the faster one, by size
+  cholesky,             ///< sparse, direct
+  conjugate_gradients,  ///< with an additive Schwarz preconditioner
+  petsc                 ///< by PETSc, in builds that have it
+};
+
+/// Does this build have the method? All but petsc are always there.
+bool is_available(MassMethod method);
+
 struct TransferOptions {
   int degree = -1;  ///< of the target fields; -1: the donor's highest degree
   Basis basis = Basis::reference;
-  bool same_basis = true;  ///< use each donor's basis instead of `basis`
+  bool same_basis = true;  ///< use each donor's basis instead of `basis`; a continuous target uses
+                           ///< the reference basis then
+  Continuity continuity = Continuity::discontinuous;  ///< of the target fields
+  bool keep_boundary = false;  ///< continuous targets: the dofs on the boundary interpolate the
+                               ///< donor, and mass is no longer conserved
+  MassMethod mass_method = MassMethod::automatic;  ///< of continuous targets
   Uncovered uncovered = Uncovered::error;
   int threads = 0;  ///< 0: all; the result does not depend on it
+};
+
+/// The solution of the global mass system of a continuous target.
+struct MassSolve {
+  std::size_t dofs = 0;
+  MassMethod method = MassMethod::automatic;  ///< the one used; never automatic in a report
+  int iterations = 0;                         ///< 0 for cholesky
+  double relative_residual = 0;               ///< of the system, over the dofs solved for
+  double boundary_mass_change = 0;  ///< mass after - mass received: the price of keep_boundary
 };
 
 struct FieldReport {
@@ -38,7 +64,9 @@ struct FieldReport {
   double relative_mass_defect =
       0;  ///< |mass_after - (mass_before - mass_outside + mass_made)| / integral of |f_D|
   double min_before = 0, max_before = 0, min_after = 0, max_after = 0;  ///< certified ranges
-  double max_element_defect = 0;  ///< largest |element mass - mass received| / integral of |f_D|
+  double max_element_defect = 0;  ///< largest |element mass - mass received| / integral of |f_D|;
+                                  ///< rounding, but for continuous targets
+  std::optional<MassSolve> mass_solve;  ///< of continuous targets
 };
 
 struct TransferReport {
@@ -77,8 +105,15 @@ class UncoveredError : public InputError {
   double area_;
 };
 
-/// Moves fields (all on one donor mesh) to a target mesh: the L2-best discontinuous fields, mass
-/// conserved.
+/// Moves fields (all on one donor mesh) to a target mesh: the L2-best fields, mass conserved.
+///
+/// Discontinuous targets conserve the mass that each element receives. Continuous ones conserve the
+/// total and the mass weighted by each continuous basis function; with keep_boundary neither, and
+/// relative_mass_defect and MassSolve::boundary_mass_change say by how much.
+/// @throws InputError for bad options, inverted elements, fields on several meshes, a continuous
+///         target in physical basis or of degree 0, keep_boundary without a continuous target,
+///         petsc in a build without it; UncoveredError; NumericsError where the overlay does not
+///         close or a mass matrix is singular
 TransferResult transfer(std::span<const Field> donors, std::shared_ptr<const TriangleMesh> target,
                         const TransferOptions& options = {}, const Progress& progress = {});
 
