@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "bezel/base/atomic_file.hpp"
@@ -18,13 +19,33 @@ namespace bezel::cli {
 namespace {
 
 struct TransferCommand {
-  std::string donor, target, out, report, uncovered = "error", continuity = "dg";
+  std::string donor, target, out, report, uncovered = "error", continuity = "dg", bounds = "none";
   std::vector<std::string> fields;
   std::optional<int> degree;
   Basis basis = Basis::reference;
   CLI::Option* basis_given = nullptr;
   std::optional<Format> format;
 };
+
+Bounds parse_bounds(const std::string& text) {
+  if (text == "none") return {};
+  if (text == "local") return Bounds::local();
+  const auto comma = text.find(',');
+  if (comma != std::string::npos) {
+    // An open side is written inf.
+    const auto number = [](const std::string& part, double open) {
+      return part == (open > 0 ? "inf" : "-inf") ? std::optional(open) : parse_number(part);
+    };
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const auto lo = number(text.substr(0, comma), -infinity);
+    const auto hi = number(text.substr(comma + 1), infinity);
+    if (lo && hi && *lo <= *hi) return Bounds::between(*lo, *hi);
+  }
+  throw UsageError(
+      "--bounds: expected two ascending numbers such as 0,1 or 0,inf, or local or none, "
+      "found '" +
+      text + "'");
+}
 
 Json to_json(const TransferCommand& options, const TransferReport& r) {
   Json fields = Json::array();
@@ -43,7 +64,9 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
                       {"min_before", f.min_before},
                       {"max_before", f.max_before},
                       {"min", f.min_after},
-                      {"max", f.max_after}});
+                      {"max", f.max_after},
+                      {"elements_limited", f.bounds.elements_limited},
+                      {"mass_moved", f.bounds.mass_moved}});
   }
   Json uncovered = Json::array();
   for (const auto& part : r.uncovered_elements)
@@ -52,6 +75,7 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
               {"donor", options.donor},
               {"target", options.target},
               {"output", options.out},
+              {"bounds", options.bounds},
               {"fields", fields},
               {"mass_outside", outside},
               {"mass_made", made},
@@ -72,7 +96,7 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
                 {"solve", r.seconds.solve}}}};
 }
 
-std::string to_table(const TransferReport& r) {
+std::string to_table(const TransferReport& r, const std::string& bounds) {
   std::size_t width = 5;
   const auto label = [](const FieldReport& f, bool several) {
     return several ? fmt::format("{}[{}]", f.name, f.component) : f.name;
@@ -92,6 +116,16 @@ std::string to_table(const TransferReport& r) {
         "{:<{}}  {:>17.10g}  {:>17.10g}  {:>10.3g}  {:>10.3g}  {:>8.1e}  {:>12.6g}  {:>12.6g}\n",
         labels[i], width, f.mass_before, f.mass_after, f.mass_outside, f.mass_made,
         f.relative_mass_defect, f.min_after, f.max_after);
+  }
+  if (bounds != "none") {
+    std::int64_t limited = 0;
+    for (const FieldReport& f : r.fields) limited += f.bounds.elements_limited;
+    text += fmt::format("bounds {}: {} limited", bounds,
+                        counted(static_cast<std::size_t>(limited), "polynomial"));
+    for (std::size_t i = 0; i < labels.size(); ++i)
+      text += fmt::format("{} mass moved for {}: {:.3g}", i == 0 ? ";" : ",", labels[i],
+                          r.fields[i].bounds.mass_moved);
+    text += "\n";
   }
   text +=
       fmt::format("overlay: {} pairs, {} crossings, {} tangencies, {} overlaps, {} unresolved\n",
@@ -128,6 +162,7 @@ void write_both(const TransferCommand& options, const Dataset& data, const Write
 }
 
 int run(const TransferCommand& options, const Context& context) {
+  const Bounds bounds = parse_bounds(options.bounds);
   WriteOptions how;
   how.format = options.format ? options.format : format_of(options.out);
   require_writable(options.out);
@@ -154,6 +189,7 @@ int run(const TransferCommand& options, const Context& context) {
   how_to.uncovered = options.uncovered == "extend" ? Uncovered::extend
                      : options.uncovered == "zero" ? Uncovered::zero
                                                    : Uncovered::error;
+  how_to.bounds = bounds;
   how_to.threads = context.threads;
   TransferResult result;
   {
@@ -175,7 +211,7 @@ int run(const TransferCommand& options, const Context& context) {
   write_both(options, moved, how, report, context);
   std::vector<std::string> files = {options.out};
   if (!options.report.empty()) files.push_back(options.report);
-  print_or_remove(context.json ? to_text(report) : to_table(result.report), files);
+  print_or_remove(context.json ? to_text(report) : to_table(result.report, options.bounds), files);
   if (!context.json && context.verbose > 0) {
     const auto& s = result.report.seconds;
     note(context, fmt::format("{:.3g} s: overlay {:.3g}, integrate {:.3g}, solve {:.3g}", s.total,
@@ -217,6 +253,12 @@ void add_transfer(CLI::App& app, Context& context) {
                    "polynomial) or zero")
       ->check(CLI::IsMember({"error", "extend", "zero"}))
       ->type_name("HOW")
+      ->capture_default_str();
+  command
+      ->add_option("--bounds", o.bounds,
+                   "Keep every value within LO,HI (inf: open), or within the donor's values nearby "
+                   "(local)")
+      ->type_name("LO,HI|local|none")
       ->capture_default_str();
   command->add_option("--report", o.report, "Write the report there as JSON too")
       ->type_name("FILE");

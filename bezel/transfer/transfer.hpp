@@ -10,6 +10,7 @@
 #include "bezel/base/error.hpp"
 #include "bezel/base/progress.hpp"
 #include "bezel/field/field.hpp"
+#include "bezel/transfer/bounds.hpp"
 
 namespace bezel {
 
@@ -25,6 +26,7 @@ struct TransferOptions {
   Basis basis = Basis::reference;
   bool same_basis = true;  ///< use each donor's basis instead of `basis`
   Uncovered uncovered = Uncovered::error;
+  Bounds bounds;    ///< kept by the whole of each target polynomial, mass conserved
   int threads = 0;  ///< 0: all; the result does not depend on it
 };
 
@@ -38,7 +40,9 @@ struct FieldReport {
   double relative_mass_defect =
       0;  ///< |mass_after - (mass_before - mass_outside + mass_made)| / integral of |f_D|
   double min_before = 0, max_before = 0, min_after = 0, max_after = 0;  ///< certified ranges
-  double max_element_defect = 0;  ///< largest |element mass - mass received| / integral of |f_D|
+  double max_element_defect = 0;  ///< largest |element mass - mass received| / integral of |f_D|,
+                                  ///< before bounds move mass
+  BoundsReport bounds;
 };
 
 struct TransferReport {
@@ -79,6 +83,10 @@ class UncoveredError : public InputError {
 
 /// Moves fields (all on one donor mesh) to a target mesh: the L2-best discontinuous fields, mass
 /// conserved.
+/// @throws InputError for arguments that do not fit each other, inverted elements, bounds that
+/// leave
+///         out 0 where uncovered parts count as 0; UncoveredError; NumericsError where the overlay
+///         does not close or bounds cannot hold a field's mass
 TransferResult transfer(std::span<const Field> donors, std::shared_ptr<const TriangleMesh> target,
                         const TransferOptions& options = {}, const Progress& progress = {});
 
