@@ -9,7 +9,6 @@
 #include "bezel/base/parallel.hpp"
 #include "bezel/bernstein/ceiling.hpp"
 #include "bezel/field/element_range.hpp"
-#include "bezel/numeric/sum.hpp"
 
 namespace bezel::detail {
 namespace {
@@ -93,20 +92,6 @@ class Deviation {
   Field q_;
 };
 
-[[noreturn]] void cannot_hold(const Field& field, int component, const ValueBounds& bounds,
-                              std::span<const double> area, double mass) {
-  double least = 0.0;
-  double most = 0.0;
-  for (std::size_t e = 0; e < area.size(); ++e) {
-    least += bounds.least(e) * area[e];
-    most += bounds.most(e) * area[e];
-  }
-  throw NumericsError(fmt::format(
-      "field '{}'{}: its mass {:.6g} does not fit into the bounds, which allow {:.6g} to {:.6g}",
-      field.name(), field.components() > 1 ? fmt::format(", component {}", component) : "", mass,
-      least, most));
-}
-
 /// Neighbours across edges.
 Neighbours across_edges(const TriangleMesh& mesh) {
   return [&mesh](std::int32_t e, std::vector<std::int32_t>& out) {
@@ -116,6 +101,29 @@ Neighbours across_edges(const TriangleMesh& mesh) {
 }
 
 }  // namespace
+
+std::string component_name(const Field& field, int component) {
+  return fmt::format("field '{}'{}", field.name(),
+                     field.components() > 1 ? fmt::format(", component {}", component) : "");
+}
+
+void check_room(const std::string& what, const ValueBounds& bounds, std::span<const double> weight,
+                std::span<const double> value, const Redistribution& done) {
+  double mass = 0.0;
+  double size = 0.0;
+  double least = 0.0;
+  double most = 0.0;
+  for (std::size_t i = 0; i < weight.size(); ++i) {
+    mass += value[i] * weight[i];
+    size += std::abs(value[i]) * weight[i];
+    least += bounds.least(i) * weight[i];
+    most += bounds.most(i) * weight[i];
+  }
+  if (std::abs(done.left_over) <= mass_rounding * size) return;
+  throw NumericsError(
+      fmt::format("{}: its mass {:.6g} does not fit into the bounds, which allow {:.6g} to {:.6g}",
+                  what, mass, least, most));
+}
 
 Limited limit_discontinuous(const Field& field, int component, const ValueBounds& bounds,
                             std::span<const double> area, int threads) {
@@ -150,16 +158,7 @@ Limited limit_discontinuous(const Field& field, int component, const ValueBounds
       redistribute(moved, area, bounds, across_edges(field.mesh()));
   Limited result;
   result.report.mass_moved = redistribution.moved;
-  {
-    std::vector<double> size(elements);
-    std::vector<double> masses(elements);
-    for (std::size_t e = 0; e < elements; ++e) {
-      masses[e] = mean[e] * area[e];
-      size[e] = std::max(std::abs(masses[e]), std::abs(moved[e] * area[e]));
-    }
-    if (std::abs(redistribution.left_over) > mass_rounding * sum(size))
-      cannot_hold(field, component, bounds, area, sum(masses));
-  }
+  check_room(component_name(field, component), bounds, area, mean, redistribution);
 
   const Deviation deviation(field, component, mean);
   result.coefficients.resize(space.coefficient_count());

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "bezel/field/field.hpp"
@@ -25,6 +26,16 @@ struct Overlapping {
 /// value
 ValueBounds local_bounds(const Field& donor, int component, std::span<const Overlapping> pairs,
                          std::size_t targets, std::span<const std::int32_t> zero, int threads);
+
+/// What messages call it: "field 'u', component 1".
+std::string component_name(const Field& field, int component);
+
+/// Says when values out of bounds had nowhere to go.
+/// @param what   the field, for the message
+/// @param value  before they were moved
+/// @throws NumericsError when what is left over is more than rounding
+void check_room(const std::string& what, const ValueBounds& bounds, std::span<const double> weight,
+                std::span<const double> value, const Redistribution& done);
 
 /// One component's coefficients after limiting, and what it took.
 struct Limited {

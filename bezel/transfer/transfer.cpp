@@ -12,6 +12,7 @@
 
 #include "bezel/base/parallel.hpp"
 #include "bezel/numeric/sum.hpp"
+#include "bezel/transfer/continuous.hpp"
 #include "bezel/transfer/element_transfer.hpp"
 #include "bezel/transfer/limit.hpp"
 #include "bezel/transfer/overlay.hpp"
@@ -96,12 +97,15 @@ Plan make_plan(std::span<const Field> donors,
     Basis basis;
     bool operator==(const Key&) const = default;
   };
+  const bool continuous = options.continuity == Continuity::continuous;
   std::vector<Key> keys;
   Plan plan;
   for (std::size_t i = 0; i < donors.size(); ++i) {
     const Space& space = donors[i].space();
     const Key key{&space, options.degree >= 0 ? options.degree : space.highest_degree(),
-                  options.same_basis ? space.basis() : options.basis};
+                  continuous           ? Basis::reference
+                  : options.same_basis ? space.basis()
+                                       : options.basis};
     const auto at =
         static_cast<std::size_t>(std::find(keys.begin(), keys.end(), key) - keys.begin());
     if (at == keys.size()) {
@@ -112,14 +116,20 @@ Plan make_plan(std::span<const Field> donors,
   }
   for (std::size_t k = 0; k < keys.size(); ++k) {
     std::shared_ptr<const Space> space;
+    std::shared_ptr<const Space> continuous_space;
     for (std::size_t m = 0; m < k && !space; ++m) {
-      if (keys[m].degree == keys[k].degree && keys[m].basis == keys[k].basis)
+      if (keys[m].degree == keys[k].degree && keys[m].basis == keys[k].basis) {
         space = plan.groups[m].target_space;
+        continuous_space = plan.groups[m].continuous_space;
+      }
     }
+    if (continuous && !continuous_space)
+      continuous_space = Space::continuous(target_mesh, keys[k].degree);
     if (!space) space = Space::discontinuous(target_mesh, keys[k].degree, keys[k].basis);
     std::vector<const Field*> fields;
     for (const std::size_t i : plan.members[k]) fields.push_back(&donors[i]);
     plan.groups.emplace_back(donor, target, fields, std::move(space));
+    plan.groups.back().continuous_space = std::move(continuous_space);
   }
   return plan;
 }
@@ -189,6 +199,27 @@ void check_arguments(std::span<const Field> donors,
                      " is not supported, expected 0 to " + std::to_string(Space::max_degree));
   }
   check_bounds(options.bounds);
+  if (options.continuity == Continuity::continuous) {
+    if (!options.same_basis && options.basis == Basis::physical) {
+      throw InputError(
+          "transfer: a continuous field cannot use the physical basis: a polynomial in x and y has "
+          "a higher degree along a curved edge than the edge has coefficients; use the reference "
+          "basis, or a discontinuous field");
+    }
+    for (const Field& f : donors) {
+      if (options.degree == 0 || (options.degree < 0 && f.space().highest_degree() == 0)) {
+        throw InputError("transfer: field '" + f.name() +
+                         "': a continuous field of degree 0 is one constant, expected degree 1 or "
+                         "more");
+      }
+    }
+    if (options.keep_boundary && options.bounds.kind != Bounds::Kind::none) {
+      throw InputError(
+          "transfer: bounds need the freedom that kept boundary values take: expected one of them");
+    }
+  } else if (options.keep_boundary) {
+    throw InputError("transfer: boundary values are kept by continuous targets only");
+  }
   for (const Field& f : donors) {
     if (&f.mesh() != &donors.front().mesh()) {
       throw InputError("transfer: field '" + f.name() + "' lives on another mesh than field '" +
@@ -345,6 +376,24 @@ TransferResult transfer(std::span<const Field> donors,
   std::optional<ElementBounds> bounds;
   if (options.bounds.kind != Bounds::Kind::none)
     bounds.emplace(options.bounds, donor, target, results, report, options);
+  std::vector<detail::ContinuousOutcome> continuous;
+  if (options.continuity == Continuity::continuous) {
+    detail::BoundsOf limits;
+    if (bounds) {
+      limits = [&](std::size_t group, std::size_t component) {
+        auto member = plan.members[group].begin();
+        while (component >= static_cast<std::size_t>(donors[*member].components()))
+          component -= static_cast<std::size_t>(donors[*member++].components());
+        const Field& field = donors[*member];
+        return detail::ComponentBounds{(*bounds)(field, static_cast<int>(component)),
+                                       detail::component_name(field, static_cast<int>(component))};
+      };
+    }
+    const auto solve_start = clock::now();
+    continuous = detail::make_continuous(plan.groups, donor, target, search, options, limits);
+    report.seconds.solve += seconds_since(solve_start);
+  }
+
   std::vector<std::optional<Field>> fields(donors.size());
   std::vector<std::vector<FieldReport>> field_reports(donors.size());
   std::size_t c0 = 0;
@@ -362,15 +411,17 @@ TransferResult transfer(std::span<const Field> donors,
       fields[i].emplace(donors[i].name(), g.target_space, std::move(coefficients),
                         donors[i].components());
       std::vector<detail::Limited> limited;
-      if (bounds) {
-        for (std::size_t c = 0; c < own; ++c) {
-          const int component = static_cast<int>(c);
+      for (std::size_t c = 0; bounds && c < own; ++c) {
+        const int component = static_cast<int>(c);
+        if (!continuous.empty()) {
+          limited.push_back(std::move(continuous[k].limited[first + c]));
+        } else {
           limited.push_back(detail::limit_discontinuous(*fields[i], component,
                                                         (*bounds)(donors[i], component),
                                                         target.element_area, options.threads));
         }
-        fields[i].emplace(detail::with_coefficients(*fields[i], limited));
       }
+      if (bounds) fields[i].emplace(detail::with_coefficients(*fields[i], limited));
       const auto before = integral(donors[i], options.threads);
       const auto after = integral(*fields[i], options.threads);
       const auto size = integral_abs(donors[i], options.threads);
@@ -384,7 +435,12 @@ TransferResult transfer(std::span<const Field> donors,
         line.mass_made = made[c0 + first + c];
         const double defect = after[c] - (before[c] - line.mass_outside + line.mass_made);
         line.relative_mass_defect = size[c] > 0.0 ? std::abs(defect) / size[c] : std::abs(defect);
-        line.max_element_defect = size[c] > 0.0 ? max_mass_defect / size[c] : max_mass_defect;
+        double element_defect = max_mass_defect;
+        if (!continuous.empty()) {
+          line.mass_solve = continuous[k].solve[first + c];
+          element_defect = continuous[k].max_element_change[first + c];
+        }
+        line.max_element_defect = size[c] > 0.0 ? element_defect / size[c] : element_defect;
         const auto range_before = value_range(donors[i], static_cast<int>(c));
         auto range_after = value_range(*fields[i], static_cast<int>(c));
         if (bounds) {
