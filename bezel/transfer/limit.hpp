@@ -23,7 +23,8 @@ struct Overlapping {
 ///
 /// @param zero  target elements where the field counts as 0 in part: 0 is in their range
 /// @accuracy ranges are certified and exceed the true ones by 1e-10 of the coefficients' largest
-/// value
+/// value (constants: by nothing; in a physical basis on curved elements by the rounding of the
+/// composition, 1e-13)
 ValueBounds local_bounds(const Field& donor, int component, std::span<const Overlapping> pairs,
                          std::size_t targets, std::span<const std::int32_t> zero, int threads);
 

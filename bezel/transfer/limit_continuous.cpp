@@ -13,7 +13,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Of the largest value: excesses that are rounding. Removing them would spoil their neighbours.
-constexpr double rounding = 4e-15;
+constexpr double rounding = 1e-14;
 /// Certified maxima are searched to this fraction of the coefficients' size.
 constexpr double range_tolerance = 1e-13;
 /// Sweeps in which alpha follows the ranges, before Zalesak's limiter takes over where they still
@@ -193,13 +193,18 @@ class ContinuousLimiter {
     dofs_.resize(low_.size());
     for (std::size_t d = 0; d < dofs_.size(); ++d) {
       double f = 0.0;
-      for (const Entry& entry : entries(d))
-        f += alpha_[static_cast<std::size_t>(entry.element)] * flux_[entry.place];
-      dofs_[d] = low_[d] + f / lumped_[d];
-      // What is beyond the bounds by rounding.
-      const double slack = rounding * scale_;
-      if (dofs_[d] > dof_.hi[d] && dofs_[d] <= dof_.hi[d] + slack) dofs_[d] = dof_.hi[d];
-      if (dofs_[d] < dof_.lo[d] && dofs_[d] >= dof_.lo[d] - slack) dofs_[d] = dof_.lo[d];
+      double size = 0.0;
+      for (const Entry& entry : entries(d)) {
+        const double part = alpha_[static_cast<std::size_t>(entry.element)] * flux_[entry.place];
+        f += part;
+        size += std::abs(part);
+      }
+      const double value = low_[d] + f / lumped_[d];
+      // What is beyond the bounds by the rounding of this sum is put back.
+      const double slack = 0x1p-49 * (scale_ + size / lumped_[d]);
+      dofs_[d] = value > dof_.hi[d] && value <= dof_.hi[d] + slack   ? dof_.hi[d]
+                 : value < dof_.lo[d] && value >= dof_.lo[d] - slack ? dof_.lo[d]
+                                                                     : value;
     }
   }
 
