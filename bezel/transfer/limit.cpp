@@ -22,7 +22,7 @@ constexpr double range_tolerance = 1e-13;
 constexpr double outside_frame = 1e-12;
 /// A mass that does not fit by less than this fraction is rounding.
 constexpr double mass_rounding = 1e-13;
-/// Changes below this fraction of the largest coefficient are rounding and are not counted.
+/// Changes below this fraction of the field's largest coefficient are rounding and are not counted.
 constexpr double counted_change = 1e-12;
 
 void for_chunks(std::size_t n, int threads, const std::function<void(std::size_t)>& body) {
@@ -160,6 +160,10 @@ Limited limit_discontinuous(const Field& field, int component, const ValueBounds
   result.report.mass_moved = redistribution.moved;
   check_room(component_name(field, component), bounds, area, mean, redistribution);
 
+  double scale = 0.0;  // of the whole field
+  for (std::size_t e = 0; e < elements; ++e)
+    for (std::size_t i = 0; i < size_of(e); ++i)
+      scale = std::max(scale, std::abs(coefficient(e, i)));
   const Deviation deviation(field, component, mean);
   result.coefficients.resize(space.coefficient_count());
   std::vector<bernstein::Range> range(elements);
@@ -191,7 +195,7 @@ Limited limit_discontinuous(const Field& field, int component, const ValueBounds
       change = std::max(change, std::abs(c - out[i]));
       if (theta < 1.0 || m != mean[e]) out[i] = c;
     }
-    limited[e] = change > counted_change * size ? 1 : 0;
+    limited[e] = change > counted_change * scale ? 1 : 0;
     const double spread = theta > 0.0 ? rounding : 0.0;
     range[e] = {std::max(bounds.least(e), m - theta * reach.below - spread),
                 std::min(bounds.most(e), m + theta * reach.above + spread)};

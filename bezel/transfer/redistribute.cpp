@@ -12,6 +12,9 @@ constexpr std::size_t largest_neighbourhood = 256;
 /// they come from.
 constexpr double rounding = 1e-13;
 
+/// A sum changes by this fraction of the sum of sizes when it is rounded.
+constexpr double negligible = 0x1p-51;
+
 /// Values around one value, in the order of their distance in the graph.
 class Neighbourhood {
  public:
@@ -100,7 +103,10 @@ Redistribution redistribute(std::span<double> value, std::span<const double> wei
       if (!placed) rest += sign * excess;
     }
   }
-  if (rest == 0.0) return done;
+  double size = 0.0;
+  for (std::size_t i = 0; i < value.size(); ++i) size += std::abs(value[i]) * weight[i];
+  // Values that are zero, or at a bound, stay so when there is no more than rounding to place.
+  if (std::abs(rest) <= negligible * size) return done;
   const Side side{value, weight, bounds, rest > 0.0 ? 1.0 : -1.0};
   double room = 0.0;
   for (std::size_t i = 0; i < value.size(); ++i) room += std::max(0.0, side.room(i));
