@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "bezel/base/atomic_file.hpp"
@@ -19,7 +20,7 @@ namespace bezel::cli {
 namespace {
 
 struct TransferCommand {
-  std::string donor, target, out, report, uncovered = "error", continuity = "dg";
+  std::string donor, target, out, report, uncovered = "error", continuity = "dg", bounds = "none";
   std::vector<std::string> fields;
   std::optional<int> degree;
   Basis basis = Basis::reference;
@@ -40,6 +41,26 @@ MassMethod method_named(const std::string& name) {
   return static_cast<MassMethod>(at - method_names.begin());
 }
 
+Bounds parse_bounds(const std::string& text) {
+  if (text == "none") return {};
+  if (text == "local") return Bounds::local();
+  const auto comma = text.find(',');
+  if (comma != std::string::npos) {
+    // An open side is written inf.
+    const auto number = [](const std::string& part, double open) {
+      return part == (open > 0 ? "inf" : "-inf") ? std::optional(open) : parse_number(part);
+    };
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const auto lo = number(text.substr(0, comma), -infinity);
+    const auto hi = number(text.substr(comma + 1), infinity);
+    if (lo && hi && *lo <= *hi) return Bounds::between(*lo, *hi);
+  }
+  throw UsageError(
+      "--bounds: expected two ascending numbers such as 0,1 or 0,inf, or local or none, "
+      "found '" +
+      text + "'");
+}
+
 Json to_json(const TransferCommand& options, const TransferReport& r) {
   Json fields = Json::array();
   double outside = 0, made = 0;
@@ -57,7 +78,9 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
                       {"min_before", f.min_before},
                       {"max_before", f.max_before},
                       {"min", f.min_after},
-                      {"max", f.max_after}});
+                      {"max", f.max_after},
+                      {"elements_limited", f.bounds.elements_limited},
+                      {"mass_moved", f.bounds.mass_moved}});
     if (!f.mass_solve) continue;
     const MassSolve& solve = *f.mass_solve;
     fields.back()["mass_solve"] = {{"dofs", solve.dofs},
@@ -73,6 +96,7 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
               {"donor", options.donor},
               {"target", options.target},
               {"output", options.out},
+              {"bounds", options.bounds},
               {"fields", fields},
               {"mass_outside", outside},
               {"mass_made", made},
@@ -93,7 +117,7 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
                 {"solve", r.seconds.solve}}}};
 }
 
-std::string to_table(const TransferReport& r, bool keep_boundary) {
+std::string to_table(const TransferReport& r, const TransferCommand& options) {
   std::size_t width = 5;
   const auto label = [](const FieldReport& f, bool several) {
     return several ? fmt::format("{}[{}]", f.name, f.component) : f.name;
@@ -114,6 +138,16 @@ std::string to_table(const TransferReport& r, bool keep_boundary) {
         labels[i], width, f.mass_before, f.mass_after, f.mass_outside, f.mass_made,
         f.relative_mass_defect, f.min_after, f.max_after);
   }
+  if (options.bounds != "none") {
+    std::int64_t limited = 0;
+    for (const FieldReport& f : r.fields) limited += f.bounds.elements_limited;
+    text += fmt::format("bounds {}: {} limited", options.bounds,
+                        counted(static_cast<std::size_t>(limited), "polynomial"));
+    for (std::size_t i = 0; i < labels.size(); ++i)
+      text += fmt::format("{} mass moved for {}: {:.3g}", i == 0 ? ";" : ",", labels[i],
+                          r.fields[i].bounds.mass_moved);
+    text += "\n";
+  }
   text +=
       fmt::format("overlay: {} pairs, {} crossings, {} tangencies, {} overlaps, {} unresolved\n",
                   r.pairs, r.crossings, r.tangencies, r.overlaps, r.unresolved);
@@ -126,7 +160,7 @@ std::string to_table(const TransferReport& r, bool keep_boundary) {
                             ? std::string("sparse Cholesky")
                             : counted(static_cast<std::size_t>(solve.iterations), "iteration"),
                         solve.relative_residual);
-    if (keep_boundary)
+    if (options.keep_boundary)
       text += fmt::format(", mass changed by {:.3g} for the boundary", solve.boundary_mass_change);
     text += "\n";
   }
@@ -167,6 +201,11 @@ void check_usage(const TransferCommand& options) {
     if (options.mass_method != "auto") throw UsageError("--mass-method needs --continuity cg");
     return;
   }
+  if (options.keep_boundary && options.bounds != "none") {
+    throw UsageError(
+        "--bounds: not with --keep-boundary: bounds need the freedom that kept boundary "
+        "values take");
+  }
   if (options.basis_given->count() > 0 && options.basis == Basis::physical) {
     throw UsageError(
         "--basis physical: not with --continuity cg: along a curved edge a polynomial in x and y "
@@ -178,6 +217,7 @@ void check_usage(const TransferCommand& options) {
 }
 
 int run(const TransferCommand& options, const Context& context) {
+  const Bounds bounds = parse_bounds(options.bounds);
   check_usage(options);
   WriteOptions how;
   how.format = options.format ? options.format : format_of(options.out);
@@ -205,6 +245,7 @@ int run(const TransferCommand& options, const Context& context) {
   how_to.uncovered = options.uncovered == "extend" ? Uncovered::extend
                      : options.uncovered == "zero" ? Uncovered::zero
                                                    : Uncovered::error;
+  how_to.bounds = bounds;
   how_to.continuity =
       options.continuity == "cg" ? Continuity::continuous : Continuity::discontinuous;
   how_to.keep_boundary = options.keep_boundary;
@@ -232,8 +273,7 @@ int run(const TransferCommand& options, const Context& context) {
   write_both(options, moved, how, report, context);
   std::vector<std::string> files = {options.out};
   if (!options.report.empty()) files.push_back(options.report);
-  print_or_remove(context.json ? to_text(report) : to_table(result.report, options.keep_boundary),
-                  files);
+  print_or_remove(context.json ? to_text(report) : to_table(result.report, options), files);
   if (!context.json && context.verbose > 0) {
     const auto& s = result.report.seconds;
     note(context, fmt::format("{:.3g} s: overlay {:.3g}, integrate {:.3g}, solve {:.3g}", s.total,
@@ -287,6 +327,12 @@ void add_transfer(CLI::App& app, Context& context) {
                    "polynomial) or zero")
       ->check(CLI::IsMember({"error", "extend", "zero"}))
       ->type_name("HOW")
+      ->capture_default_str();
+  command
+      ->add_option("--bounds", o.bounds,
+                   "Keep every value within LO,HI (inf: open), or within the donor's values nearby "
+                   "(local)")
+      ->type_name("LO,HI|local|none")
       ->capture_default_str();
   command->add_option("--report", o.report, "Write the report there as JSON too")
       ->type_name("FILE");

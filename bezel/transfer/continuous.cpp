@@ -6,6 +6,7 @@
 
 #include "bezel/numeric/sum.hpp"
 #include "bezel/transfer/boundary_values.hpp"
+#include "bezel/transfer/limit_continuous.hpp"
 #include "bezel/transfer/mass_solve.hpp"
 
 namespace bezel::detail {
@@ -31,7 +32,8 @@ std::vector<double> missing_masses(const ContinuousMass& mass, std::span<const d
 }  // namespace
 
 ContinuousOutcome make_continuous(ContinuousMass& mass, int components,
-                                  std::span<const double> given, std::span<double> coefficients) {
+                                  std::span<const double> given, std::span<double> coefficients,
+                                  const ContinuousLimit& limit) {
   const auto nc = static_cast<std::size_t>(components);
   const Space& space = *mass.space();
   ContinuousOutcome outcome;
@@ -52,7 +54,11 @@ ContinuousOutcome make_continuous(ContinuousMass& mass, int components,
     outcome.max_element_change.push_back(largest);
     outcome.solve.push_back({solution.dofs.size(), mass.method(), solution.iterations,
                              solution.relative_residual, given.empty() ? 0.0 : -sum(missing)});
-    const std::vector<double> expanded = space.expand(solution.dofs);
+    std::vector<double> expanded = space.expand(solution.dofs);
+    if (limit) {
+      outcome.limited.push_back(limit(i, c, solution.dofs));
+      expanded = outcome.limited.back().coefficients;
+    }
     for (std::size_t n = 0; n < c.size(); ++n) coefficients[n * nc + i] = expanded[n];
   }
   return outcome;
@@ -60,7 +66,8 @@ ContinuousOutcome make_continuous(ContinuousMass& mass, int components,
 
 std::vector<ContinuousOutcome> make_continuous(std::span<Group> groups, const OverlayMesh& donor,
                                                const OverlayMesh& target, const FrontSearch& search,
-                                               const TransferOptions& options) {
+                                               const TransferOptions& options,
+                                               const BoundsOf& bounds) {
   std::vector<ContinuousOutcome> outcomes;
   std::vector<std::unique_ptr<ContinuousMass>> masses;  // one per space
   for (Group& g : groups) {
@@ -74,7 +81,12 @@ std::vector<ContinuousOutcome> make_continuous(std::span<Group> groups, const Ov
                                                         options.threads, options.mass_method));
       known = masses.end() - 1;
     }
-    outcomes.push_back(make_continuous(**known, g.components, boundary.values, g.out));
+    const auto limit = [&](std::size_t i, std::span<const double> c, std::span<const double> dofs) {
+      const ComponentBounds own = bounds(outcomes.size(), i);
+      return limit_continuous(**known, c, dofs, own.values, own.what, options.threads);
+    };
+    outcomes.push_back(make_continuous(**known, g.components, boundary.values, g.out,
+                                       bounds ? ContinuousLimit(limit) : ContinuousLimit()));
     g.target_space = g.continuous_space;
   }
   return outcomes;

@@ -34,6 +34,7 @@ struct ElementOutcome {
 /// entry a pair.
 struct GivenList {
   std::vector<std::int32_t> donor;
+  std::vector<std::int32_t> target;  ///< filled by the caller of process()
   std::vector<double> area;
   std::vector<double> mass;  ///< per entry all groups' components in order
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <tuple>
@@ -13,6 +14,7 @@
 #include "bezel/numeric/sum.hpp"
 #include "bezel/transfer/continuous.hpp"
 #include "bezel/transfer/element_transfer.hpp"
+#include "bezel/transfer/limit.hpp"
 #include "bezel/transfer/overlay.hpp"
 #include "bezel/transfer/overlay_mesh.hpp"
 
@@ -29,6 +31,8 @@ constexpr std::size_t chunk_size = 256;
 constexpr double silent_gap = 1e-10;
 /// Donor area outside the target below this fraction of the element is rounding of the sums.
 constexpr double outside_rounding = 1e-13;
+/// Elements that share less than this fraction of the smaller one only touch.
+constexpr double touching = 1e-13;
 
 double seconds_since(clock::time_point start) {
   return std::chrono::duration<double>(clock::now() - start).count();
@@ -147,6 +151,61 @@ Plan make_plan(std::span<const Field> donors,
   return plan;
 }
 
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", x);
+  return text;
+}
+
+void check_bounds(const Bounds& bounds) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (bounds.kind != Bounds::Kind::global) return;
+  if (!(bounds.lo <= bounds.hi) || bounds.lo == infinity || bounds.hi == -infinity) {
+    throw InputError("transfer: found bounds " + number(bounds.lo) + " to " + number(bounds.hi) +
+                     ", expected two numbers in ascending order");
+  }
+}
+
+/// Bounds of each target element's values, for one component after the other.
+class ElementBounds {
+ public:
+  ElementBounds(const Bounds& bounds, const detail::OverlayMesh& donor,
+                const detail::OverlayMesh& target, std::span<const ChunkResult> results,
+                const TransferReport& report, const TransferOptions& options)
+      : bounds_(bounds), targets_(target.element_count()), threads_(options.threads) {
+    if (options.uncovered == Uncovered::zero) {
+      for (const auto& part : report.uncovered_elements) zero_.push_back(part.first.value);
+    }
+    if (bounds.kind == Bounds::Kind::global && !zero_.empty() &&
+        (bounds.lo > 0.0 || bounds.hi < 0.0)) {
+      throw InputError("transfer: " + std::to_string(zero_.size()) +
+                       " uncovered triangles count as 0, which the bounds " + number(bounds.lo) +
+                       " to " + number(bounds.hi) + " leave out");
+    }
+    if (bounds.kind != Bounds::Kind::local) return;
+    for (const ChunkResult& r : results) {
+      for (std::size_t i = 0; i < r.given.donor.size(); ++i) {
+        const std::int32_t d = r.given.donor[i];
+        const std::int32_t t = r.given.target[i];
+        const double smaller = std::min(donor.element_area[static_cast<std::size_t>(d)],
+                                        target.element_area[static_cast<std::size_t>(t)]);
+        if (r.given.area[i] > touching * smaller) pairs_.push_back({t, d});
+      }
+    }
+  }
+  detail::ValueBounds operator()(const Field& donor, int component) const {
+    if (bounds_.kind == Bounds::Kind::global) return {{bounds_.lo}, {bounds_.hi}};
+    return detail::local_bounds(donor, component, pairs_, targets_, zero_, threads_);
+  }
+
+ private:
+  Bounds bounds_;
+  std::size_t targets_;
+  int threads_;
+  std::vector<std::int32_t> zero_;
+  std::vector<detail::Overlapping> pairs_;
+};
+
 void check_arguments(std::span<const Field> donors,
                      const std::shared_ptr<const TriangleMesh>& target,
                      const TransferOptions& options) {
@@ -156,6 +215,7 @@ void check_arguments(std::span<const Field> donors,
     throw InputError("transfer: degree " + std::to_string(options.degree) +
                      " is not supported, expected 0 to " + std::to_string(Space::max_degree));
   }
+  check_bounds(options.bounds);
   if (options.continuity == Continuity::continuous) {
     if (!options.same_basis && options.basis == Basis::physical) {
       throw InputError(
@@ -172,6 +232,10 @@ void check_arguments(std::span<const Field> donors,
     }
     if (!is_available(options.mass_method))
       throw InputError("transfer: this build of bezel has no PETSc, expected another mass method");
+    if (options.keep_boundary && options.bounds.kind != Bounds::Kind::none) {
+      throw InputError(
+          "transfer: bounds need the freedom that kept boundary values take: expected one of them");
+    }
   } else if (options.keep_boundary) {
     throw InputError("transfer: boundary values are kept by continuous targets only");
   }
@@ -185,11 +249,6 @@ void check_arguments(std::span<const Field> donors,
 
 std::string uncovered_message(const std::vector<std::pair<ElementId, double>>& elements,
                               double area) {
-  const auto number = [](double x) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", x);
-    return std::string(text);
-  };
   std::string message = "the donor mesh does not cover the target mesh: area " + number(area) +
                         " in " + std::to_string(elements.size()) +
                         (elements.size() == 1 ? " triangle (" : " triangles (");
@@ -241,6 +300,7 @@ TransferResult transfer(std::span<const Field> donors,
           const std::int32_t t = order[i];
           const detail::ElementOutcome outcome =
               worker->element.process(t, worker->segments_of(i - begin), result.given, result.made);
+          result.given.target.resize(result.given.donor.size(), t);
           result.solve += outcome.solve_seconds;
           result.counts.pairs += outcome.pairs;
           result.max_partition_residual =
@@ -332,10 +392,24 @@ TransferResult transfer(std::span<const Field> donors,
     }
   }
 
+  std::optional<ElementBounds> bounds;
+  if (options.bounds.kind != Bounds::Kind::none)
+    bounds.emplace(options.bounds, donor, target, results, report, options);
   std::vector<detail::ContinuousOutcome> continuous;
   if (options.continuity == Continuity::continuous) {
+    detail::BoundsOf limits;
+    if (bounds) {
+      limits = [&](std::size_t group, std::size_t component) {
+        auto member = plan.members[group].begin();
+        while (component >= static_cast<std::size_t>(donors[*member].components()))
+          component -= static_cast<std::size_t>(donors[*member++].components());
+        const Field& field = donors[*member];
+        return detail::ComponentBounds{(*bounds)(field, static_cast<int>(component)),
+                                       detail::component_name(field, static_cast<int>(component))};
+      };
+    }
     const auto solve_start = clock::now();
-    continuous = detail::make_continuous(plan.groups, donor, target, search, options);
+    continuous = detail::make_continuous(plan.groups, donor, target, search, options, limits);
     report.seconds.solve += seconds_since(solve_start);
   }
 
@@ -355,6 +429,18 @@ TransferResult transfer(std::span<const Field> donors,
       }
       fields[i].emplace(donors[i].name(), g.target_space, std::move(coefficients),
                         donors[i].components());
+      std::vector<detail::Limited> limited;
+      for (std::size_t c = 0; bounds && c < own; ++c) {
+        const int component = static_cast<int>(c);
+        if (!continuous.empty()) {
+          limited.push_back(std::move(continuous[k].limited[first + c]));
+        } else {
+          limited.push_back(detail::limit_discontinuous(*fields[i], component,
+                                                        (*bounds)(donors[i], component),
+                                                        target.element_area, options.threads));
+        }
+      }
+      if (bounds) fields[i].emplace(detail::with_coefficients(*fields[i], limited));
       const auto before = integral(donors[i], options.threads);
       const auto after = integral(*fields[i], options.threads);
       const auto size = integral_abs(donors[i], options.threads);
@@ -375,7 +461,13 @@ TransferResult transfer(std::span<const Field> donors,
         }
         line.max_element_defect = size[c] > 0.0 ? element_defect / size[c] : element_defect;
         const auto range_before = value_range(donors[i], static_cast<int>(c));
-        const auto range_after = value_range(*fields[i], static_cast<int>(c));
+        auto range_after = value_range(*fields[i], static_cast<int>(c));
+        if (bounds) {
+          // Both enclose the values; the limiter's is the sharper one at the bounds.
+          range_after = {std::max(range_after.lo, limited[c].range.lo),
+                         std::min(range_after.hi, limited[c].range.hi)};
+          line.bounds = limited[c].report;
+        }
         line.min_before = range_before.lo;
         line.max_before = range_before.hi;
         line.min_after = range_after.lo;

@@ -11,6 +11,7 @@
 #include "bezel/base/error.hpp"
 #include "bezel/base/progress.hpp"
 #include "bezel/field/field.hpp"
+#include "bezel/transfer/bounds.hpp"
 
 namespace bezel {
 
@@ -42,6 +43,7 @@ struct TransferOptions {
                                ///< donor, and mass is no longer conserved
   MassMethod mass_method = MassMethod::automatic;  ///< of continuous targets
   Uncovered uncovered = Uncovered::error;
+  Bounds bounds;    ///< kept by the whole of each target polynomial, mass conserved
   int threads = 0;  ///< 0: all; the result does not depend on it
 };
 
@@ -64,9 +66,10 @@ struct FieldReport {
   double relative_mass_defect =
       0;  ///< |mass_after - (mass_before - mass_outside + mass_made)| / integral of |f_D|
   double min_before = 0, max_before = 0, min_after = 0, max_after = 0;  ///< certified ranges
-  double max_element_defect = 0;  ///< largest |element mass - mass received| / integral of |f_D|;
-                                  ///< rounding, but for continuous targets
+  double max_element_defect = 0;  ///< largest |element mass - mass received| / integral of |f_D|,
+                                  ///< before bounds move mass; rounding, but for continuous targets
   std::optional<MassSolve> mass_solve;  ///< of continuous targets
+  BoundsReport bounds;
 };
 
 struct TransferReport {
@@ -111,9 +114,10 @@ class UncoveredError : public InputError {
 /// total and the mass weighted by each continuous basis function; with keep_boundary neither, and
 /// relative_mass_defect and MassSolve::boundary_mass_change say by how much.
 /// @throws InputError for bad options, inverted elements, fields on several meshes, a continuous
-///         target in physical basis or of degree 0, keep_boundary without a continuous target,
-///         petsc in a build without it; UncoveredError; NumericsError where the overlay does not
-///         close or a mass matrix is singular
+///         target in physical basis or of degree 0, keep_boundary without a continuous target or
+///         with bounds, petsc in a build without it, bounds that leave out 0 where uncovered parts
+///         count as 0; UncoveredError; NumericsError where the overlay does not close, a mass
+///         matrix is singular, or bounds cannot hold a field's mass
 TransferResult transfer(std::span<const Field> donors, std::shared_ptr<const TriangleMesh> target,
                         const TransferOptions& options = {}, const Progress& progress = {});
 
