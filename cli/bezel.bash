@@ -24,6 +24,7 @@ _bezel() {
       --basis) words='reference physical' ;;
       --continuity) words='dg cg' ;;
       --uncovered) words='error extend zero' ;;
+      --conserve) words='covered total' ;;
       --pattern) words='structured unstructured' ;;
       --colormap) words='viridis cividis coolwarm grey' ;;
       --format | --from) words='msh22_ascii msh22_binary msh41_ascii msh41_binary vtu native' ;;
