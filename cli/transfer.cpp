@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "bezel/base/atomic_file.hpp"
@@ -19,13 +20,34 @@ namespace {
 
 struct TransferCommand {
   std::string donor, target, out, report, uncovered = "error", conserve = "covered",
-                                          continuity = "dg";
+                                          continuity = "dg", bounds = "none";
   std::vector<std::string> fields;
   std::optional<int> degree;
   Basis basis = Basis::reference;
   CLI::Option* basis_given = nullptr;
+  bool keep_boundary = false;
   std::optional<Format> format;
 };
+
+Bounds parse_bounds(const std::string& text) {
+  if (text == "none") return {};
+  if (text == "local") return Bounds::local();
+  const auto comma = text.find(',');
+  if (comma != std::string::npos) {
+    // An open side is written inf.
+    const auto number = [](const std::string& part, double open) {
+      return part == (open > 0 ? "inf" : "-inf") ? std::optional(open) : parse_number(part);
+    };
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const auto lo = number(text.substr(0, comma), -infinity);
+    const auto hi = number(text.substr(comma + 1), infinity);
+    if (lo && hi && *lo <= *hi) return Bounds::between(*lo, *hi);
+  }
+  throw UsageError(
+      "--bounds: expected two ascending numbers such as 0,1 or 0,inf, or local or none, "
+      "found '" +
+      text + "'");
+}
 
 Json to_json(const TransferCommand& options, const TransferReport& r) {
   Json fields = Json::array();
@@ -46,7 +68,17 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
                       {"min_before", f.min_before},
                       {"max_before", f.max_before},
                       {"min", f.min_after},
-                      {"max", f.max_after}});
+                      {"max", f.max_after},
+                      {"elements_limited", f.bounds.elements_limited},
+                      {"mass_moved", f.bounds.mass_moved}});
+    if (!f.mass_solve) continue;
+    const MassSolve& solve = *f.mass_solve;
+    fields.back()["mass_solve"] = {
+        {"dofs", solve.dofs},
+        {"method", solve.iterations > 0 ? "conjugate_gradients" : "cholesky"},
+        {"iterations", solve.iterations},
+        {"relative_residual", solve.relative_residual},
+        {"boundary_mass_change", solve.boundary_mass_change}};
   }
   Json uncovered = Json::array();
   for (const auto& part : r.uncovered_elements)
@@ -55,6 +87,7 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
               {"donor", options.donor},
               {"target", options.target},
               {"output", options.out},
+              {"bounds", options.bounds},
               {"fields", fields},
               {"mass_outside", outside},
               {"mass_made", made},
@@ -76,7 +109,7 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
                 {"solve", r.seconds.solve}}}};
 }
 
-std::string to_table(const TransferReport& r) {
+std::string to_table(const TransferReport& r, const TransferCommand& options) {
   std::size_t width = 5;
   const auto label = [](const FieldReport& f, bool several) {
     return several ? fmt::format("{}[{}]", f.name, f.component) : f.name;
@@ -97,9 +130,31 @@ std::string to_table(const TransferReport& r) {
         labels[i], width, f.mass_before, f.mass_after, f.mass_outside, f.mass_made,
         f.relative_mass_defect, f.min_after, f.max_after);
   }
+  if (options.bounds != "none") {
+    std::int64_t limited = 0;
+    for (const FieldReport& f : r.fields) limited += f.bounds.elements_limited;
+    text += fmt::format("bounds {}: {} limited", options.bounds,
+                        counted(static_cast<std::size_t>(limited), "polynomial"));
+    for (std::size_t i = 0; i < labels.size(); ++i)
+      text += fmt::format("{} mass moved for {}: {:.3g}", i == 0 ? ";" : ",", labels[i],
+                          r.fields[i].bounds.mass_moved);
+    text += "\n";
+  }
   text +=
       fmt::format("overlay: {} pairs, {} crossings, {} tangencies, {} overlaps, {} unresolved\n",
                   r.pairs, r.crossings, r.tangencies, r.overlaps, r.unresolved);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (!r.fields[i].mass_solve) continue;
+    const MassSolve& solve = *r.fields[i].mass_solve;
+    text += fmt::format(
+        "{:<{}}  {} degrees of freedom, {}, residual {:.1e}", labels[i], width, solve.dofs,
+        solve.iterations > 0 ? counted(static_cast<std::size_t>(solve.iterations), "iteration")
+                             : std::string("sparse Cholesky"),
+        solve.relative_residual);
+    if (options.keep_boundary)
+      text += fmt::format(", mass changed by {:.3g} for the boundary", solve.boundary_mass_change);
+    text += "\n";
+  }
   text += fmt::format("largest partition residual {:.1e}, largest joint gap {:.1e}\n",
                       r.max_partition_residual, r.max_joint_gap);
   if (r.uncovered_area > 0) {
@@ -138,7 +193,27 @@ void write_both(const TransferCommand& options, const Dataset& data, const Write
   }
 }
 
+void check_usage(const TransferCommand& options) {
+  if (options.continuity != "cg") {
+    if (options.keep_boundary) throw UsageError("--keep-boundary needs --continuity cg");
+    return;
+  }
+  if (options.keep_boundary && options.bounds != "none") {
+    throw UsageError(
+        "--bounds: not with --keep-boundary: bounds need the freedom that kept boundary "
+        "values take");
+  }
+  if (options.basis_given->count() > 0 && options.basis == Basis::physical) {
+    throw UsageError(
+        "--basis physical: not with --continuity cg: along a curved edge a polynomial in x and y "
+        "has a higher degree than the edge has coefficients");
+  }
+  if (options.degree == 0) throw UsageError("--degree 0: --continuity cg needs at least 1");
+}
+
 int run(const TransferCommand& options, const Context& context) {
+  const Bounds bounds = parse_bounds(options.bounds);
+  check_usage(options);
   WriteOptions how;
   how.format = options.format ? options.format : format_of(options.out);
   require_writable(options.out);
@@ -166,6 +241,10 @@ int run(const TransferCommand& options, const Context& context) {
                      : options.uncovered == "zero" ? Uncovered::zero
                                                    : Uncovered::error;
   how_to.conserve = options.conserve == "total" ? Conserve::total : Conserve::covered;
+  how_to.bounds = bounds;
+  how_to.continuity =
+      options.continuity == "cg" ? Continuity::continuous : Continuity::discontinuous;
+  how_to.keep_boundary = options.keep_boundary;
   how_to.threads = context.threads;
   TransferResult result;
   {
@@ -176,7 +255,9 @@ int run(const TransferCommand& options, const Context& context) {
       throw InputError(InputPlace{options.target, 0, {}, -1},
                        std::string(error.what()) + " (--uncovered)");
     } catch (const InputError& error) {
-      throw error.in_file(error.message().find("donor mesh") == 0 ? options.donor : options.target);
+      const bool donors =
+          error.message().find("donor mesh") == 0 || error.message().find("transfer: field") == 0;
+      throw error.in_file(donors ? options.donor : options.target);
     }
   }
   Dataset moved;
@@ -187,7 +268,7 @@ int run(const TransferCommand& options, const Context& context) {
   write_both(options, moved, how, report, context);
   std::vector<std::string> files = {options.out};
   if (!options.report.empty()) files.push_back(options.report);
-  print_or_remove(context.json ? to_text(report) : to_table(result.report), files);
+  print_or_remove(context.json ? to_text(report) : to_table(result.report, options), files);
   if (!context.json && context.verbose > 0) {
     const auto& s = result.report.seconds;
     note(context, fmt::format("{:.3g} s: overlay {:.3g}, integrate {:.3g}, solve {:.3g}", s.total,
@@ -219,10 +300,15 @@ void add_transfer(CLI::App& app, Context& context) {
   o.basis_given = add_basis_option(
       *command, o.basis,
       "reference (mapped) or physical (polynomials in x and y); default: each field's own");
-  command->add_option("--continuity", o.continuity, "dg: the new fields are discontinuous")
-      ->check(CLI::IsMember({"dg"}))
+  command
+      ->add_option("--continuity", o.continuity,
+                   "dg: the new fields are discontinuous; cg: continuous (reference basis)")
+      ->check(CLI::IsMember({"dg", "cg"}))
       ->type_name("CONTINUITY")
       ->capture_default_str();
+  command->add_flag(
+      "--keep-boundary", o.keep_boundary,
+      "With --continuity cg: the boundary takes the donor's values; mass changes a little");
   command
       ->add_option("--uncovered", o.uncovered,
                    "Where no donor triangle lies: error (refuse), extend (continue the nearest "
@@ -236,6 +322,12 @@ void add_transfer(CLI::App& app, Context& context) {
                    "goes to triangles at the boundary; constants change there)")
       ->check(CLI::IsMember({"covered", "total"}))
       ->type_name("WHAT")
+      ->capture_default_str();
+  command
+      ->add_option("--bounds", o.bounds,
+                   "Keep every value within LO,HI (inf: open), or within the donor's values nearby "
+                   "(local)")
+      ->type_name("LO,HI|local|none")
       ->capture_default_str();
   command->add_option("--report", o.report, "Write the report there as JSON too")
       ->type_name("FILE");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <tuple>
@@ -12,7 +13,9 @@
 #include "bezel/base/parallel.hpp"
 #include "bezel/numeric/sum.hpp"
 #include "bezel/transfer/conserve.hpp"
+#include "bezel/transfer/continuous.hpp"
 #include "bezel/transfer/element_transfer.hpp"
+#include "bezel/transfer/limit.hpp"
 #include "bezel/transfer/overlay.hpp"
 #include "bezel/transfer/overlay_mesh.hpp"
 
@@ -30,6 +33,8 @@ constexpr double silent_gap = 1e-10;
 /// Donor area outside the target, and target area without donor for Conserve::total, below this
 /// fraction of the element is rounding of the sums.
 constexpr double outside_rounding = 1e-13;
+/// Elements that share less than this fraction of the smaller one only touch.
+constexpr double touching = 1e-13;
 
 double seconds_since(clock::time_point start) {
   return std::chrono::duration<double>(clock::now() - start).count();
@@ -95,12 +100,15 @@ Plan make_plan(std::span<const Field> donors,
     Basis basis;
     bool operator==(const Key&) const = default;
   };
+  const bool continuous = options.continuity == Continuity::continuous;
   std::vector<Key> keys;
   Plan plan;
   for (std::size_t i = 0; i < donors.size(); ++i) {
     const Space& space = donors[i].space();
     const Key key{&space, options.degree >= 0 ? options.degree : space.highest_degree(),
-                  options.same_basis ? space.basis() : options.basis};
+                  continuous           ? Basis::reference
+                  : options.same_basis ? space.basis()
+                                       : options.basis};
     const auto at =
         static_cast<std::size_t>(std::find(keys.begin(), keys.end(), key) - keys.begin());
     if (at == keys.size()) {
@@ -111,17 +119,78 @@ Plan make_plan(std::span<const Field> donors,
   }
   for (std::size_t k = 0; k < keys.size(); ++k) {
     std::shared_ptr<const Space> space;
+    std::shared_ptr<const Space> continuous_space;
     for (std::size_t m = 0; m < k && !space; ++m) {
-      if (keys[m].degree == keys[k].degree && keys[m].basis == keys[k].basis)
+      if (keys[m].degree == keys[k].degree && keys[m].basis == keys[k].basis) {
         space = plan.groups[m].target_space;
+        continuous_space = plan.groups[m].continuous_space;
+      }
     }
+    if (continuous && !continuous_space)
+      continuous_space = Space::continuous(target_mesh, keys[k].degree);
     if (!space) space = Space::discontinuous(target_mesh, keys[k].degree, keys[k].basis);
     std::vector<const Field*> fields;
     for (const std::size_t i : plan.members[k]) fields.push_back(&donors[i]);
     plan.groups.emplace_back(donor, target, fields, std::move(space));
+    plan.groups.back().continuous_space = std::move(continuous_space);
   }
   return plan;
 }
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", x);
+  return text;
+}
+
+void check_bounds(const Bounds& bounds) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (bounds.kind != Bounds::Kind::global) return;
+  if (!(bounds.lo <= bounds.hi) || bounds.lo == infinity || bounds.hi == -infinity) {
+    throw InputError("transfer: found bounds " + number(bounds.lo) + " to " + number(bounds.hi) +
+                     ", expected two numbers in ascending order");
+  }
+}
+
+/// Bounds of each target element's values, for one component after the other.
+class ElementBounds {
+ public:
+  ElementBounds(const Bounds& bounds, const detail::OverlayMesh& donor,
+                const detail::OverlayMesh& target, std::span<const ChunkResult> results,
+                const TransferReport& report, const TransferOptions& options)
+      : bounds_(bounds), targets_(target.element_count()), threads_(options.threads) {
+    if (options.uncovered == Uncovered::zero) {
+      for (const auto& part : report.uncovered_elements) zero_.push_back(part.first.value);
+    }
+    if (bounds.kind == Bounds::Kind::global && !zero_.empty() &&
+        (bounds.lo > 0.0 || bounds.hi < 0.0)) {
+      throw InputError("transfer: " + std::to_string(zero_.size()) +
+                       " uncovered triangles count as 0, which the bounds " + number(bounds.lo) +
+                       " to " + number(bounds.hi) + " leave out");
+    }
+    if (bounds.kind != Bounds::Kind::local) return;
+    for (const ChunkResult& r : results) {
+      for (std::size_t i = 0; i < r.given.donor.size(); ++i) {
+        const std::int32_t d = r.given.donor[i];
+        const std::int32_t t = r.given.target[i];
+        const double smaller = std::min(donor.element_area[static_cast<std::size_t>(d)],
+                                        target.element_area[static_cast<std::size_t>(t)]);
+        if (r.given.area[i] > touching * smaller) pairs_.push_back({t, d});
+      }
+    }
+  }
+  detail::ValueBounds operator()(const Field& donor, int component) const {
+    if (bounds_.kind == Bounds::Kind::global) return {{bounds_.lo}, {bounds_.hi}};
+    return detail::local_bounds(donor, component, pairs_, targets_, zero_, threads_);
+  }
+
+ private:
+  Bounds bounds_;
+  std::size_t targets_;
+  int threads_;
+  std::vector<std::int32_t> zero_;
+  std::vector<detail::Overlapping> pairs_;
+};
 
 void check_arguments(std::span<const Field> donors,
                      const std::shared_ptr<const TriangleMesh>& target,
@@ -131,6 +200,33 @@ void check_arguments(std::span<const Field> donors,
   if (options.degree < -1 || options.degree > Space::max_degree) {
     throw InputError("transfer: degree " + std::to_string(options.degree) +
                      " is not supported, expected 0 to " + std::to_string(Space::max_degree));
+  }
+  check_bounds(options.bounds);
+  if (options.continuity == Continuity::continuous) {
+    if (!options.same_basis && options.basis == Basis::physical) {
+      throw InputError(
+          "transfer: a continuous field cannot use the physical basis: a polynomial in x and y has "
+          "a higher degree along a curved edge than the edge has coefficients; use the reference "
+          "basis, or a discontinuous field");
+    }
+    for (const Field& f : donors) {
+      if (options.degree == 0 || (options.degree < 0 && f.space().highest_degree() == 0)) {
+        throw InputError("transfer: field '" + f.name() +
+                         "': a continuous field of degree 0 is one constant, expected degree 1 or "
+                         "more");
+      }
+    }
+    if (options.conserve == Conserve::total) {
+      throw InputError(
+          "transfer: the total mass is kept by constants on single triangles, which continuous "
+          "fields do not have: expected a discontinuous target, or the covered mass kept");
+    }
+    if (options.keep_boundary && options.bounds.kind != Bounds::Kind::none) {
+      throw InputError(
+          "transfer: bounds need the freedom that kept boundary values take: expected one of them");
+    }
+  } else if (options.keep_boundary) {
+    throw InputError("transfer: boundary values are kept by continuous targets only");
   }
   for (const Field& f : donors) {
     if (&f.mesh() != &donors.front().mesh()) {
@@ -142,11 +238,6 @@ void check_arguments(std::span<const Field> donors,
 
 std::string uncovered_message(const std::vector<std::pair<ElementId, double>>& elements,
                               double area) {
-  const auto number = [](double x) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", x);
-    return std::string(text);
-  };
   std::string message = "the donor mesh does not cover the target mesh: area " + number(area) +
                         " in " + std::to_string(elements.size()) +
                         (elements.size() == 1 ? " triangle (" : " triangles (");
@@ -205,6 +296,7 @@ TransferResult transfer(std::span<const Field> donors,
               outcome.uncovered_area >
                   outside_rounding * target.element_area[static_cast<std::size_t>(t)])
             result.element_made.add(t, made_here);
+          result.given.target.resize(result.given.donor.size(), t);
           result.overlay += std::chrono::duration<double>(t1 - t0).count();
           result.integrate += seconds_since(t1) - outcome.solve_seconds;
           result.solve += outcome.solve_seconds;
@@ -313,6 +405,27 @@ TransferResult transfer(std::span<const Field> donors,
     report.spread_elements = static_cast<std::int64_t>(added.element.size());
   }
 
+  std::optional<ElementBounds> bounds;
+  if (options.bounds.kind != Bounds::Kind::none)
+    bounds.emplace(options.bounds, donor, target, results, report, options);
+  std::vector<detail::ContinuousOutcome> continuous;
+  if (options.continuity == Continuity::continuous) {
+    detail::BoundsOf limits;
+    if (bounds) {
+      limits = [&](std::size_t group, std::size_t component) {
+        auto member = plan.members[group].begin();
+        while (component >= static_cast<std::size_t>(donors[*member].components()))
+          component -= static_cast<std::size_t>(donors[*member++].components());
+        const Field& field = donors[*member];
+        return detail::ComponentBounds{(*bounds)(field, static_cast<int>(component)),
+                                       detail::component_name(field, static_cast<int>(component))};
+      };
+    }
+    const auto solve_start = clock::now();
+    continuous = detail::make_continuous(plan.groups, donor, target, search, options, limits);
+    report.seconds.solve += seconds_since(solve_start);
+  }
+
   std::vector<std::optional<Field>> fields(donors.size());
   std::vector<std::vector<FieldReport>> field_reports(donors.size());
   std::size_t c0 = 0;
@@ -344,6 +457,18 @@ TransferResult transfer(std::span<const Field> donors,
       }
       fields[i].emplace(donors[i].name(), g.target_space, std::move(coefficients),
                         donors[i].components());
+      std::vector<detail::Limited> limited;
+      for (std::size_t c = 0; bounds && c < own; ++c) {
+        const int component = static_cast<int>(c);
+        if (!continuous.empty()) {
+          limited.push_back(std::move(continuous[k].limited[first + c]));
+        } else {
+          limited.push_back(detail::limit_discontinuous(*fields[i], component,
+                                                        (*bounds)(donors[i], component),
+                                                        target.element_area, options.threads));
+        }
+      }
+      if (bounds) fields[i].emplace(detail::with_coefficients(*fields[i], limited));
       const auto before = integral(donors[i], options.threads);
       const auto after = integral(*fields[i], options.threads);
       const auto size = integral_abs(donors[i], options.threads);
@@ -360,9 +485,20 @@ TransferResult transfer(std::span<const Field> donors,
         const double defect =
             after[c] - (before[c] - line.mass_outside + line.mass_made + line.mass_spread);
         line.relative_mass_defect = size[c] > 0.0 ? std::abs(defect) / size[c] : std::abs(defect);
-        line.max_element_defect = size[c] > 0.0 ? max_mass_defect / size[c] : max_mass_defect;
+        double element_defect = max_mass_defect;
+        if (!continuous.empty()) {
+          line.mass_solve = continuous[k].solve[first + c];
+          element_defect = continuous[k].max_element_change[first + c];
+        }
+        line.max_element_defect = size[c] > 0.0 ? element_defect / size[c] : element_defect;
         const auto range_before = value_range(donors[i], static_cast<int>(c));
-        const auto range_after = value_range(*fields[i], static_cast<int>(c));
+        auto range_after = value_range(*fields[i], static_cast<int>(c));
+        if (bounds) {
+          // Both enclose the values; the limiter's is the sharper one at the bounds.
+          range_after = {std::max(range_after.lo, limited[c].range.lo),
+                         std::min(range_after.hi, limited[c].range.hi)};
+          line.bounds = limited[c].report;
+        }
         line.min_before = range_before.lo;
         line.max_before = range_before.hi;
         line.min_after = range_after.lo;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "bezel/base/error.hpp"
 #include "bezel/base/progress.hpp"
 #include "bezel/field/field.hpp"
+#include "bezel/transfer/bounds.hpp"
 
 namespace bezel {
 
@@ -30,13 +32,26 @@ enum class Conserve {
 struct TransferOptions {
   int degree = -1;  ///< of the target fields; -1: the donor's highest degree
   Basis basis = Basis::reference;
-  bool same_basis = true;  ///< use each donor's basis instead of `basis`
+  bool same_basis = true;  ///< use each donor's basis instead of `basis`; a continuous target uses
+                           ///< the reference basis then
+  Continuity continuity = Continuity::discontinuous;  ///< of the target fields
+  bool keep_boundary = false;  ///< continuous targets: the dofs on the boundary interpolate the
+                               ///< donor, and mass is no longer conserved
   Uncovered uncovered = Uncovered::error;
   /// total: what an element made is taken from it again, and what a donor element has outside goes
   /// to the target's boundary elements near it (to all of them when none is near), as a constant
   /// each.
   Conserve conserve = Conserve::covered;
+  Bounds bounds;    ///< kept by the whole of each target polynomial, mass conserved
   int threads = 0;  ///< 0: all; the result does not depend on it
+};
+
+/// The solution of the global mass system of a continuous target.
+struct MassSolve {
+  std::size_t dofs = 0;
+  int iterations = 0;               ///< of conjugate gradients; 0: sparse Cholesky
+  double relative_residual = 0;     ///< of the system, over the dofs solved for
+  double boundary_mass_change = 0;  ///< mass after - mass received: the price of keep_boundary
 };
 
 struct FieldReport {
@@ -52,7 +67,10 @@ struct FieldReport {
   double relative_mass_defect = 0;  ///< |mass_after - (mass_before - mass_outside + mass_made +
                                     ///< mass_spread)| / integral of |f_D|
   double min_before = 0, max_before = 0, min_after = 0, max_after = 0;  ///< certified ranges
-  double max_element_defect = 0;  ///< largest |element mass - mass received| / integral of |f_D|
+  double max_element_defect = 0;  ///< largest |element mass - mass received| / integral of |f_D|,
+                                  ///< before bounds move mass; rounding, but for continuous targets
+  std::optional<MassSolve> mass_solve;  ///< of continuous targets
+  BoundsReport bounds;
 };
 
 struct TransferReport {
@@ -92,8 +110,16 @@ class UncoveredError : public InputError {
   double area_;
 };
 
-/// Moves fields (all on one donor mesh) to a target mesh: the L2-best discontinuous fields, mass
-/// conserved.
+/// Moves fields (all on one donor mesh) to a target mesh: the L2-best fields, mass conserved.
+///
+/// Discontinuous targets conserve the mass that each element receives. Continuous ones conserve the
+/// total and the mass weighted by each continuous basis function; with keep_boundary neither, and
+/// relative_mass_defect and MassSolve::boundary_mass_change say by how much.
+/// @throws InputError for bad options, inverted elements, fields on several meshes, a continuous
+///         target in physical basis or of degree 0, keep_boundary without a continuous target or
+///         with bounds, bounds that leave out 0 where uncovered parts count as 0; UncoveredError;
+///         NumericsError where the overlay does not close, a mass matrix is singular, or bounds
+///         cannot hold a field's mass
 TransferResult transfer(std::span<const Field> donors, std::shared_ptr<const TriangleMesh> target,
                         const TransferOptions& options = {}, const Progress& progress = {});
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "bezel/base/error.hpp"
 #include "bezel/mesh/generate.hpp"
 #include "bezel/transfer/transfer.hpp"
 #include "support/meshes.hpp"
@@ -145,6 +146,22 @@ TEST(ConserveTotal, TargetThatSticksOut) {
   const FieldReport& line = result.report.fields[0];
   EXPECT_GT(line.mass_made, 1.0);
   EXPECT_NEAR(line.mass_after, line.mass_before, 1e-14 * line.mass_before);
+}
+
+TEST(ConserveTotal, RefusesContinuousTargets) {
+  const auto mesh = grid_mesh(2, 1, 1.0, same_place);
+  const Field f = with(mesh, 1, "1");
+  TransferOptions options = total(Uncovered::error);
+  options.continuity = Continuity::continuous;
+  try {
+    (void)transfer({&f, 1}, mesh, options);
+    FAIL() << "expected an InputError";
+  } catch (const InputError& e) {
+    EXPECT_STREQ(e.what(),
+                 "transfer: the total mass is kept by constants on single triangles, which "
+                 "continuous fields do not have: expected a discontinuous target, or the covered "
+                 "mass kept");
+  }
 }
 
 TEST(ConserveTotal, IsNothingWhereTheMeshesCoverEachOther) {
