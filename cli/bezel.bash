@@ -26,6 +26,7 @@ _bezel() {
       --mass-method) words='auto cholesky conjugate_gradients petsc' ;;
       --uncovered) words='error extend zero' ;;
       --bounds) words='local none' ;;
+      --conserve) words='covered total' ;;
       --pattern) words='structured unstructured' ;;
       --colormap) words='viridis cividis coolwarm grey' ;;
       --format | --from) words='msh22_ascii msh22_binary msh41_ascii msh41_binary vtu native' ;;

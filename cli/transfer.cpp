@@ -20,7 +20,8 @@ namespace bezel::cli {
 namespace {
 
 struct TransferCommand {
-  std::string donor, target, out, report, uncovered = "error", continuity = "dg", bounds = "none";
+  std::string donor, target, out, report, uncovered = "error", conserve = "covered",
+                                          continuity = "dg", bounds = "none";
   std::vector<std::string> fields;
   std::optional<int> degree;
   Basis basis = Basis::reference;
@@ -73,6 +74,8 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
                       {"mass_after", f.mass_after},
                       {"mass_outside", f.mass_outside},
                       {"mass_made", f.mass_made},
+                      {"mass_spread", f.mass_spread},
+                      {"max_spread_change", f.max_spread_change},
                       {"relative_mass_defect", f.relative_mass_defect},
                       {"max_element_defect", f.max_element_defect},
                       {"min_before", f.min_before},
@@ -107,6 +110,7 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
               {"unresolved", r.unresolved},
               {"uncovered_area", r.uncovered_area},
               {"outside_area", r.outside_area},
+              {"spread_elements", r.spread_elements},
               {"uncovered_elements", uncovered},
               {"max_partition_residual", r.max_partition_residual},
               {"max_joint_gap", r.max_joint_gap},
@@ -172,6 +176,13 @@ std::string to_table(const TransferReport& r, const TransferCommand& options) {
   }
   if (r.outside_area > 0) {
     text += fmt::format("donor area without target {:.6g}\n", r.outside_area);
+  }
+  if (r.spread_elements > 0) {
+    double change = 0;
+    for (const FieldReport& f : r.fields) change = std::max(change, f.max_spread_change);
+    text += fmt::format(
+        "total mass kept: values in {} at the boundary changed by up to {:.3g}, constants too\n",
+        counted(static_cast<std::size_t>(r.spread_elements), "triangle"), change);
   }
   return text;
 }
@@ -245,6 +256,7 @@ int run(const TransferCommand& options, const Context& context) {
   how_to.uncovered = options.uncovered == "extend" ? Uncovered::extend
                      : options.uncovered == "zero" ? Uncovered::zero
                                                    : Uncovered::error;
+  how_to.conserve = options.conserve == "total" ? Conserve::total : Conserve::covered;
   how_to.bounds = bounds;
   how_to.continuity =
       options.continuity == "cg" ? Continuity::continuous : Continuity::discontinuous;
@@ -327,6 +339,13 @@ void add_transfer(CLI::App& app, Context& context) {
                    "polynomial) or zero")
       ->check(CLI::IsMember({"error", "extend", "zero"}))
       ->type_name("HOW")
+      ->capture_default_str();
+  command
+      ->add_option("--conserve", o.conserve,
+                   "Which mass is kept: covered (before - outside + made) or total (the difference "
+                   "goes to triangles at the boundary; constants change there)")
+      ->check(CLI::IsMember({"covered", "total"}))
+      ->type_name("WHAT")
       ->capture_default_str();
   command
       ->add_option("--bounds", o.bounds,

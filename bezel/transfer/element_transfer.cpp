@@ -239,6 +239,7 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
     flush(g, d, pt, mapped);
     for (std::size_t n = 0; n < functions; ++n) {
       const double difference = exact.basis[n] - mapped.basis[n];
+      sums.basis[n] += exact.basis[n];
       for (std::size_t c = 0; c < nc; ++c) {
         sums.product[n * nc + c] +=
             mapped.product[n * nc + c] + donor_mass[c] / donor_area * difference;

@@ -12,6 +12,7 @@
 
 #include "bezel/base/parallel.hpp"
 #include "bezel/numeric/sum.hpp"
+#include "bezel/transfer/conserve.hpp"
 #include "bezel/transfer/continuous.hpp"
 #include "bezel/transfer/element_transfer.hpp"
 #include "bezel/transfer/limit.hpp"
@@ -29,7 +30,8 @@ using clock = std::chrono::steady_clock;
 constexpr std::size_t chunk_size = 256;
 /// Uncovered parts below this fraction of an element are rounding.
 constexpr double silent_gap = 1e-10;
-/// Donor area outside the target below this fraction of the element is rounding of the sums.
+/// Donor area outside the target, and target area without donor for Conserve::total, below this
+/// fraction of the element is rounding of the sums.
 constexpr double outside_rounding = 1e-13;
 /// Elements that share less than this fraction of the smaller one only touch.
 constexpr double touching = 1e-13;
@@ -43,6 +45,7 @@ struct ChunkResult {
   detail::GivenList given;
   detail::OverlayCounts counts;
   std::vector<double> made;
+  detail::ElementMasses element_made;  // with Conserve::total
   std::vector<std::pair<ElementId, double>> uncovered;
   double uncovered_area = 0;
   double max_partition_residual = 0, max_joint_gap = 0, max_mass_defect = 0;
@@ -232,6 +235,11 @@ void check_arguments(std::span<const Field> donors,
     }
     if (!is_available(options.mass_method))
       throw InputError("transfer: this build of bezel has no PETSc, expected another mass method");
+    if (options.conserve == Conserve::total) {
+      throw InputError(
+          "transfer: the total mass is kept by constants on single triangles, which continuous "
+          "fields do not have: expected a discontinuous target, or the covered mass kept");
+    }
     if (options.keep_boundary && options.bounds.kind != Bounds::Kind::none) {
       throw InputError(
           "transfer: bounds need the freedom that kept boundary values take: expected one of them");
@@ -291,6 +299,7 @@ TransferResult transfer(std::span<const Field> donors,
         auto worker = pool.take();
         ChunkResult& result = results[chunk];
         result.made.assign(components, 0.0);
+        std::vector<double> made_here;
         const std::size_t begin = chunk * chunk_size,
                           end = std::min(order.size(), (chunk + 1) * chunk_size);
         const auto t0 = clock::now();
@@ -298,8 +307,14 @@ TransferResult transfer(std::span<const Field> donors,
         const auto t1 = clock::now();
         for (std::size_t i = begin; i < end; ++i) {
           const std::int32_t t = order[i];
+          made_here.assign(components, 0.0);
           const detail::ElementOutcome outcome =
-              worker->element.process(t, worker->segments_of(i - begin), result.given, result.made);
+              worker->element.process(t, worker->segments_of(i - begin), result.given, made_here);
+          for (std::size_t c = 0; c < components; ++c) result.made[c] += made_here[c];
+          if (options.conserve == Conserve::total &&
+              outcome.uncovered_area >
+                  outside_rounding * target.element_area[static_cast<std::size_t>(t)])
+            result.element_made.add(t, made_here);
           result.given.target.resize(result.given.donor.size(), t);
           result.solve += outcome.solve_seconds;
           result.counts.pairs += outcome.pairs;
@@ -378,6 +393,8 @@ TransferResult transfer(std::span<const Field> donors,
   }
 
   std::vector<double> outside(components, 0.0);
+  detail::ElementMasses element_outside{components, {}, {}};
+  std::vector<double> rest_mass(components);
   for (std::size_t d = 0; d < donor.element_count(); ++d) {
     const double rest = donor.element_area[d] - given_area[d];
     if (rest <= outside_rounding * donor.element_area[d]) continue;
@@ -386,10 +403,25 @@ TransferResult transfer(std::span<const Field> donors,
     for (const detail::Group& g : plan.groups) {
       const auto nc = static_cast<std::size_t>(g.components);
       for (std::size_t c = 0; c < nc; ++c) {
-        outside[c0 + c] += g.donor_mass[d * nc + c] - given_mass[d * components + c0 + c];
+        rest_mass[c0 + c] = g.donor_mass[d * nc + c] - given_mass[d * components + c0 + c];
+        outside[c0 + c] += rest_mass[c0 + c];
       }
       c0 += nc;
     }
+    if (options.conserve == Conserve::total)
+      element_outside.add(static_cast<std::int32_t>(d), rest_mass);
+  }
+  detail::ElementMasses added{components, {}, {}};
+  if (options.conserve == Conserve::total) {
+    detail::ElementMasses element_made{components, {}, {}};
+    for (const ChunkResult& r : results) {
+      for (std::size_t i = 0; i < r.element_made.element.size(); ++i) {
+        element_made.add(r.element_made.element[i],
+                         std::span(r.element_made.mass).subspan(i * components, components));
+      }
+    }
+    added = detail::spread(donor, target, element_outside, element_made);
+    report.spread_elements = static_cast<std::int64_t>(added.element.size());
   }
 
   std::optional<ElementBounds> bounds;
@@ -427,6 +459,21 @@ TransferResult transfer(std::span<const Field> donors,
       for (std::size_t n = 0; n < rows; ++n) {
         for (std::size_t c = 0; c < own; ++c) coefficients[n * own + c] = g.out[n * nc + first + c];
       }
+      std::vector<double> spread_mass(own, 0.0);
+      std::vector<double> spread_change(own, 0.0);
+      for (std::size_t a = 0; a < added.element.size(); ++a) {
+        const ElementId e(added.element[a]);
+        const auto size =
+            static_cast<std::size_t>(bernstein::triangle_size(g.target_space->degree(e)));
+        for (std::size_t c = 0; c < own; ++c) {
+          const double mass = added.mass[a * components + c0 + first + c];
+          const double step = mass / target.element_area[e.index()];
+          for (std::size_t n = 0; n < size; ++n)
+            coefficients[(g.target_space->offset(e) + n) * own + c] += step;
+          spread_mass[c] += mass;
+          spread_change[c] = std::max(spread_change[c], std::abs(step));
+        }
+      }
       fields[i].emplace(donors[i].name(), g.target_space, std::move(coefficients),
                         donors[i].components());
       std::vector<detail::Limited> limited;
@@ -452,7 +499,10 @@ TransferResult transfer(std::span<const Field> donors,
         line.mass_after = after[c];
         line.mass_outside = outside[c0 + first + c];
         line.mass_made = made[c0 + first + c];
-        const double defect = after[c] - (before[c] - line.mass_outside + line.mass_made);
+        line.mass_spread = spread_mass[c];
+        line.max_spread_change = spread_change[c];
+        const double defect =
+            after[c] - (before[c] - line.mass_outside + line.mass_made + line.mass_spread);
         line.relative_mass_defect = size[c] > 0.0 ? std::abs(defect) / size[c] : std::abs(defect);
         double element_defect = max_mass_defect;
         if (!continuous.empty()) {

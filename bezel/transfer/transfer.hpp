@@ -33,6 +33,13 @@ enum class MassMethod {
 /// Does this build have the method? All but petsc are always there.
 bool is_available(MassMethod method);
 
+/// Which mass is kept where the meshes do not cover each other.
+enum class Conserve {
+  covered,  ///< after = before - outside + made: what the two meshes have in common
+  total     ///< after = before: the difference is spread over elements at the target's boundary;
+            ///< constants change there
+};
+
 struct TransferOptions {
   int degree = -1;  ///< of the target fields; -1: the donor's highest degree
   Basis basis = Basis::reference;
@@ -43,6 +50,10 @@ struct TransferOptions {
                                ///< donor, and mass is no longer conserved
   MassMethod mass_method = MassMethod::automatic;  ///< of continuous targets
   Uncovered uncovered = Uncovered::error;
+  /// total: what an element made is taken from it again, and what a donor element has outside goes
+  /// to the target's boundary elements near it (to all of them when none is near), as a constant
+  /// each.
+  Conserve conserve = Conserve::covered;
   Bounds bounds;    ///< kept by the whole of each target polynomial, mass conserved
   int threads = 0;  ///< 0: all; the result does not depend on it
 };
@@ -63,8 +74,11 @@ struct FieldReport {
          mass_after = 0;    ///< integrals of donor and target field, from their coefficients
   double mass_outside = 0;  ///< donor mass over parts that no target element covers
   double mass_made = 0;     ///< target mass over parts that no donor element covers
-  double relative_mass_defect =
-      0;  ///< |mass_after - (mass_before - mass_outside + mass_made)| / integral of |f_D|
+  double mass_spread = 0;   ///< mass added at the boundary (Conserve::total)
+  double max_spread_change =
+      0;  ///< by which a value changed most by that: |mass added| / area of an element
+  double relative_mass_defect = 0;  ///< |mass_after - (mass_before - mass_outside + mass_made +
+                                    ///< mass_spread)| / integral of |f_D|
   double min_before = 0, max_before = 0, min_after = 0, max_after = 0;  ///< certified ranges
   double max_element_defect = 0;  ///< largest |element mass - mass received| / integral of |f_D|,
                                   ///< before bounds move mass; rounding, but for continuous targets
@@ -75,8 +89,9 @@ struct FieldReport {
 struct TransferReport {
   std::vector<FieldReport> fields;
   std::int64_t pairs = 0, crossings = 0, tangencies = 0, overlaps = 0, unresolved = 0;
-  double uncovered_area = 0;  ///< target area without donor, in squared length units
-  double outside_area = 0;    ///< donor area without target
+  double uncovered_area = 0;         ///< target area without donor, in squared length units
+  double outside_area = 0;           ///< donor area without target
+  std::int64_t spread_elements = 0;  ///< target elements that Conserve::total changed
   double max_partition_residual =
       0;  ///< max over targets of |sum of pair areas - covered area| / area
   double max_joint_gap =
