@@ -51,6 +51,13 @@ class SmoothCurve {
   /// @param s in [0, length()]; clamped to it
   double at_length(double s) const;
 
+  /// Points looked at by the constructor, 65 per smooth part, ascending from t = -1 to 1.
+  struct Sample {
+    double t;
+    Vec<dim> x;
+  };
+  std::span<const Sample> samples() const { return state_->samples; }
+
   /// The part between two parameters as a curve on [-1, 1] again, with the breakpoints inside it.
   /// At an end that is a breakpoint the derivatives are those of the part's side.
   ///
@@ -64,6 +71,7 @@ class SmoothCurve {
   struct State {
     Function function;
     std::vector<double> breakpoints;
+    std::vector<Sample> samples;
     std::vector<Panel> panels;  // ends of panels, ascending; the last one is {1, length}
   };
   std::shared_ptr<const State> state_;
