@@ -44,30 +44,29 @@ int minimise_distance(const Problem<dim>& problem, Nodes<dim>& nodes, Score& sco
   // |p'| is frozen in each step, and the derivative of a distance is exact: the foot moves along
   // the curve. In the plane the distance has a sign and gives one residual; in space the residual
   // is the vector normal to the curve.
-  const auto build = [&](NormalEquations& equations) {
+  const auto build = [&](small::LeastSquares& squares, const Vector& unit) {
     for (int a = 0; a < rung.m; ++a) {
       const Vec<dim> p = combine(rung.value_row(a), nodes);
       const Vec<dim> slope = combine(rung.slope_row(a), nodes);
       const CurveJet<dim> at = problem.curve(score.foot[std::size_t(a)]);
       const Vec<dim> e = p - at.x;
       const Vec<dim> tau = (1.0 / norm(at.d1)) * at.d1;
-      const double weight = rung.weight[std::size_t(a)] * norm(slope);
+      const double weight = std::sqrt(rung.weight[std::size_t(a)] * norm(slope));
       const double* l = rung.value_row(a) + 1;
       Vector row;
       if constexpr (dim == 2) {
         for (int k = 0; k < size; ++k)
           row[std::size_t(k)] =
-              l[k] * equations.unit[std::size_t(k)] * cross(tau, nodes.g[std::size_t(k) + 1].d1);
-        equations.add(size, weight, row.data(), cross(tau, e));
+              l[k] * unit[std::size_t(k)] * cross(tau, nodes.g[std::size_t(k) + 1].d1);
+        squares.add(weight, row.data(), -cross(tau, e));
       } else {
         const Vec<dim> across = e - dot(e, tau) * tau;
         for (int c = 0; c < dim; ++c) {
           for (int k = 0; k < size; ++k) {
             const Vec<dim>& d1 = nodes.g[std::size_t(k) + 1].d1;
-            row[std::size_t(k)] =
-                l[k] * equations.unit[std::size_t(k)] * (d1[c] - dot(d1, tau) * tau[c]);
+            row[std::size_t(k)] = l[k] * unit[std::size_t(k)] * (d1[c] - dot(d1, tau) * tau[c]);
           }
-          equations.add(size, weight, row.data(), across[c]);
+          squares.add(weight, row.data(), -across[c]);
         }
       }
     }

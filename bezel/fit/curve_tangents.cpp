@@ -191,7 +191,7 @@ NewtonResult solve_tangents(const Problem<3>& problem, Nodes<3>& nodes, bool pat
     return std::isfinite(sum) ? sum : HUGE_VAL;
   };
   double cost = cost_of(nodes);
-  const auto build = [&](NormalEquations& equations) {
+  const auto build = [&](small::LeastSquares& squares, const Vector& unit) {
     for (int node = 1; node < nodes.n; ++node) {
       const Tangent<3> r = tangent(rung, nodes, node);
       const double along = dot(r.slope, r.tau);
@@ -205,8 +205,8 @@ NewtonResult solve_tangents(const Problem<3>& problem, Nodes<3>& nodes, bool pat
               scale * rung.d_row(node)[k + 1] * (d1[c] - dot(d1, r.tau) * r.tau[c]);
         }
         row[std::size_t(node) - 1] = own[c];
-        for (int k = 0; k < size; ++k) row[std::size_t(k)] *= equations.unit[std::size_t(k)];
-        equations.add(size, 1.0, row.data(), f[c]);
+        for (int k = 0; k < size; ++k) row[std::size_t(k)] *= unit[std::size_t(k)];
+        squares.add(1.0, row.data(), -f[c]);
       }
     }
   };
