@@ -5,35 +5,72 @@
 namespace bezel::curve_search {
 using small::Vector;
 
+namespace {
+
+// Where to look for the foot of the a-th point: the interpolant of the parameters there, if it is
+// between the parameters of the nodes beside it. Calls in ascending order of a.
+template <int dim>
+class Start {
+ public:
+  Start(const CurveRung& rung, const Nodes<dim>& nodes) : rung_(rung), nodes_(nodes) {}
+  double operator()(int a) {
+    const auto xi = rung_.basis.nodes();
+    const double x = rung_.xi[std::size_t(a)];
+    while (x > xi[k_ + 1]) ++k_;
+    const double t0 = nodes_.t[k_], t1 = nodes_.t[k_ + 1];
+    double guess = 0.0;
+    for (int k = 0; k <= nodes_.n; ++k) guess += rung_.value_row(a)[k] * nodes_.t[std::size_t(k)];
+    if (guess >= t0 && guess <= t1) return guess;
+    return t0 + (t1 - t0) * ((x - xi[k_]) / (xi[k_ + 1] - xi[k_]));
+  }
+
+ private:
+  const CurveRung& rung_;
+  const Nodes<dim>& nodes_;
+  std::size_t k_ = 0;
+};
+
+}  // namespace
+
 template <int dim>
 Score measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const Score* guess) {
   const CurveRung& rung = problem.tables.rung(nodes.n);
-  const auto xi = rung.basis.nodes();
+  Start<dim> start(rung, nodes);
   Score score;
-  double sum = 0.0, slowest = HUGE_VAL;
-  for (int a = 0, k = 0; a < rung.m; ++a) {
+  double sum = 0.0, slowest = HUGE_VAL, furthest = -1.0;
+  for (int a = 0; a < rung.m; ++a) {
     const double x = rung.xi[std::size_t(a)];
     const Vec<dim> p = combine(rung.value_row(a), nodes);
-    const Vec<dim> slope = combine(rung.slope_row(a), nodes);
-    double start;
-    if (guess) {
-      start = guess->foot[std::size_t(a)];
-    } else {
-      while (x > xi[std::size_t(k) + 1]) ++k;
-      const double part = (x - xi[std::size_t(k)]) / (xi[std::size_t(k) + 1] - xi[std::size_t(k)]);
-      start =
-          nodes.t[std::size_t(k)] + part * (nodes.t[std::size_t(k) + 1] - nodes.t[std::size_t(k)]);
-    }
-    const Foot<dim> f = foot(problem.curve, p, start);
-    const double speed = norm(slope);
-    slowest = std::min(slowest, speed);
+    const double speed = norm(combine(rung.slope_row(a), nodes));
+    const Foot<dim> f = foot(problem.curve, p, guess ? guess->foot[std::size_t(a)] : start(a));
     score.foot[std::size_t(a)] = f.s;
-    sum += rung.weight[std::size_t(a)] * speed * dot(f.e, f.e);
+    const double distance_squared = dot(f.e, f.e);
+    sum += rung.weight[std::size_t(a)] * speed * distance_squared;
+    if (speed < slowest) {
+      slowest = speed;
+      score.slow_xi = x;
+    }
+    if (distance_squared > furthest) {
+      furthest = distance_squared;
+      score.far_xi = x;
+    }
   }
   score.d2 = std::isfinite(sum) ? std::sqrt(sum) : HUGE_VAL;
   score.min_speed = slowest / (0.5 * problem.length);
   score.valid = nodes.ordered() && score.min_speed >= 1e-3 && std::isfinite(sum);
   return score;
+}
+
+template <int dim>
+double rough_distance(const Problem<dim>& problem, const Nodes<dim>& nodes) {
+  const CurveRung& rung = problem.tables.rung(nodes.n);
+  Start<dim> start(rung, nodes);
+  double sum = 0.0;
+  for (int a = 1; a < rung.m; a += 4) {
+    const Foot<dim> f = foot(problem.curve, combine(rung.value_row(a), nodes), start(a));
+    sum += rung.weight[std::size_t(a)] * dot(f.e, f.e);
+  }
+  return std::sqrt(4.0 * 0.5 * problem.length * sum);
 }
 
 template <int dim>
@@ -83,6 +120,8 @@ int minimise_distance(const Problem<dim>& problem, Nodes<dim>& nodes, Score& sco
 
 template Score measure(const Problem<2>&, const Nodes<2>&, const Score*);
 template Score measure(const Problem<3>&, const Nodes<3>&, const Score*);
+template double rough_distance(const Problem<2>&, const Nodes<2>&);
+template double rough_distance(const Problem<3>&, const Nodes<3>&);
 template int minimise_distance(const Problem<2>&, Nodes<2>&, Score&, int);
 template int minimise_distance(const Problem<3>&, Nodes<3>&, Score&, int);
 

@@ -65,6 +65,25 @@ Nodes<dim> lift(const Problem<dim>& problem, const Nodes<dim>& lower, int degree
   return next;
 }
 
+// Nodes after a change of parameter that gives a part `density` of its speed at xi = c, so that the
+// nodes crowd there: phi(c + h u) = c + h (b u + (1 - b) u^3) on both sides, h = +-1 - c.
+template <int dim>
+Nodes<dim> crowded(const Problem<dim>& problem, const Nodes<dim>& nodes, double c, double density) {
+  const CurveRung& rung = problem.tables.rung(nodes.n);
+  const auto xi = rung.basis.nodes();
+  const std::size_t width = std::size_t(nodes.n) + 1;
+  std::array<double, max_nodes * max_nodes> rows;
+  for (std::size_t j = 0; j < width; ++j) {
+    const double h = xi[j] < c ? -1.0 - c : 1.0 - c, u = (xi[j] - c) / h;
+    rung.basis.values(c + h * (density * u + (1.0 - density) * u * u * u),
+                      std::span(rows).subspan(j * width, width));
+  }
+  Nodes<dim> next;
+  next.n = nodes.n;
+  project(problem, nodes, rows.data(), true, next);
+  return next;
+}
+
 // Nodes spread by a density of |curvature|^(1/3) + a tenth of its mean, per arc length.
 template <int dim>
 Nodes<dim> curvature_nodes(const Problem<dim>& problem, int degree) {
@@ -215,6 +234,13 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
       const Nodes<dim> curved = curvature_nodes(problem, n);
       level.newton(curved, false);
       level.distance(curved, 15);
+    }
+    if (!level.done(last) && level.best.score.valid) {
+      for (const double density : {0.5, 0.25}) {
+        const Found<dim> from = level.best;
+        level.distance(crowded(problem, from.nodes, from.score.slow_xi, density), 15);
+        level.distance(crowded(problem, from.nodes, from.score.far_xi, density), 15);
+      }
     }
     if (final && !level.at_floor()) {
       // Never worse than the simple placements.

@@ -184,20 +184,27 @@ struct NewtonResult {
 /// Newton on the equal-tangent equations (in space: damped Gauss-Newton on their squares), then
 /// with a line search, then Levenberg-Marquardt. `nodes` becomes the best iterate.
 ///
-/// @param patient  false: stop after the plain Newton steps
+/// @param patient    false: stop after the plain Newton steps
+/// @param converged  the residual of a root
 template <int dim>
-NewtonResult solve_tangents(const Problem<dim>& problem, Nodes<dim>& nodes, bool patient);
+NewtonResult solve_tangents(const Problem<dim>& problem, Nodes<dim>& nodes, bool patient,
+                            double converged = 1e-12);
 
 /// Mean square distance of an interpolant to the curve, measured while searching.
 struct Score {
-  double d2 = HUGE_VAL;                                        ///< sqrt(int d^2 |p'|)
-  double min_speed = 0.0;                                      ///< smallest |p'| / (L / 2)
-  bool valid = false;                                          ///< nodes ordered, min_speed >= 1e-3
+  double d2 = HUGE_VAL;                ///< sqrt(int d^2 |p'|)
+  double min_speed = 0.0;              ///< smallest |p'| / (L / 2)
+  bool valid = false;                  ///< nodes ordered, min_speed >= 1e-3
+  double slow_xi = 0.0, far_xi = 0.0;  ///< where |p\'| is smallest, and d largest
   std::array<double, std::size_t(4) * max_curve_degree> foot;  ///< parameters of the feet
 };
 /// @param guess  feet to start from; null: between the nodes
 template <int dim>
 Score measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const Score* guess = nullptr);
+
+/// About the same d2 from one point in four: a check.
+template <int dim>
+double rough_distance(const Problem<dim>& problem, const Nodes<dim>& nodes);
 
 /// Levenberg-Marquardt on the mean square distance; `nodes` and `score` become the best.
 ///
