@@ -5,8 +5,11 @@ namespace {
 
 // Below this fraction of the length a distance is rounding error.
 constexpr double floor_of_length = 2e-15;
-// A degree whose distance falls by this factor needs no closer look.
-constexpr double enough = 0.3;
+// A degree whose distance falls by this factor needs no closer look; the last degree, by the
+// second.
+constexpr double enough = 0.3, enough_at_last = 0.1;
+// Below this fraction of the length, degrees that bring no gain are left out.
+constexpr double nearly_exact = 1e-12;
 
 // Nodes of degree `next.n` from those of a lower degree: feet of the points of its interpolant.
 //
@@ -122,6 +125,7 @@ class Level {
   Level(const Problem<dim>& problem, int degree, Effort& effort)
       : problem_(problem), degree_(degree), effort_(effort) {}
   Found<dim> best, root;
+  Found<dim> runner_up;  // the best nodes that are not nearly the best ones
 
   Score offer(const Nodes<dim>& nodes, bool is_root) {
     const Score score = measure(problem_, nodes);
@@ -135,11 +139,29 @@ class Level {
     if (nodes.ordered()) offer(nodes, r.converged);
   }
   // Least distance from a start, then Newton from there.
-  void distance(Nodes<dim> nodes, int iterations) {
+  void descend(Nodes<dim> nodes) {
     Score score = measure(problem_, nodes);
-    effort_.distance += minimise_distance(problem_, nodes, score, iterations);
+    effort_.distance += minimise_distance(problem_, nodes, score, 15);
     keep(nodes, score, false);
     if (score.valid) newton(nodes, false);
+  }
+  // Least distance and Newton in turn. Newton leaves valleys in which the distance falls slowly,
+  // also where it does not converge; a few steps of least distance then follow from there.
+  void explore(Nodes<dim> nodes, int rounds) {
+    Score score = measure(problem_, nodes);
+    for (int round = 0; round < rounds; ++round) {
+      effort_.distance += minimise_distance(problem_, nodes, score, round == 0 ? 8 : 15);
+      keep(nodes, score, false);
+      if (!score.valid) return;
+      Nodes<dim> aside = nodes;
+      const NewtonResult r = solve_tangents(problem_, aside, false);
+      effort_.newton += r.iterations;
+      if (!aside.ordered()) continue;
+      Score found = offer(aside, r.converged);
+      if (!found.valid) continue;
+      effort_.distance += minimise_distance(problem_, aside, found, 8);
+      keep(aside, found, false);
+    }
   }
   void polish(int iterations) {
     if (!best.score.valid) return;
@@ -148,9 +170,9 @@ class Level {
     effort_.distance += minimise_distance(problem_, nodes, score, iterations);
     keep(nodes, score, false);
   }
-  bool done(const Found<dim>& last) const {
+  bool done(const Found<dim>& last, double factor) const {
     return at_floor() ||
-           (best.score.valid && last.score.valid && best.score.d2 < enough * last.score.d2);
+           (best.score.valid && last.score.valid && best.score.d2 < factor * last.score.d2);
   }
   bool at_floor() const {
     return best.score.valid && best.score.d2 < floor_of_length * problem_.length;
@@ -160,8 +182,27 @@ class Level {
   void keep(const Nodes<dim>& nodes, const Score& score, bool is_root) {
     const Found<dim> found{nodes, score,
                            is_root ? CurveKind::equal_tangent : CurveKind::orthogonal_distance};
-    if (better(score, best)) best = found;
+    if (different(nodes, best)) {
+      if (better(score, best)) {
+        runner_up = best;
+        best = found;
+      } else if (better(score, runner_up)) {
+        runner_up = found;
+      }
+    } else if (better(score, best)) {
+      best = found;
+    }
     if (is_root && better(score, root)) root = found;
+  }
+  // Some node is away by a fifth of the smaller gap beside it.
+  bool different(const Nodes<dim>& nodes, const Found<dim>& from) const {
+    if (from.nodes.n != degree_) return true;
+    for (std::size_t i = 1; i < std::size_t(degree_); ++i) {
+      const auto& t = from.nodes.t;
+      if (std::fabs(nodes.t[i] - t[i]) > 0.2 * std::min(t[i] - t[i - 1], t[i + 1] - t[i]))
+        return true;
+    }
+    return false;
   }
   bool better(const Score& score, const Found<dim>& than) const {
     if (than.nodes.n != degree_) return true;  // nothing yet
@@ -200,15 +241,12 @@ bool quick_climb(const Problem<dim>& problem, int degree, Found<dim>& found, Eff
 template <int dim>
 void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>& root,
            Effort& effort) {
-  Found<dim> last{problem.chord(), {}, CurveKind::placed}, second;
+  Found<dim> last{problem.chord(), {}, CurveKind::placed}, second, runner_up;
   last.score = measure(problem, last.nodes);
   best = root = last;
   for (int n = 2; n <= degree; ++n) {
     const CurveRung& rung = problem.tables.rung(n);
     const bool final = n == degree;
-    Level<dim> level(problem, n, effort);
-    Nodes<dim> start;
-    start.n = n;
     if (last.score.valid && last.score.d2 < floor_of_length * problem.length) {
       // Exact already: the same polynomial with more nodes is a root too, to rounding.
       Level<dim> top(problem, degree, effort);
@@ -217,31 +255,52 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
       root = top.root;
       return;
     }
-    project(problem, last.nodes, rung.from_last.data(), true, start);
+    Level<dim> level(problem, n, effort);
+    Nodes<dim> start;
+    start.n = n;
+    if (last.nodes.n == n - 1)
+      project(problem, last.nodes, rung.from_last.data(), true, start);
+    else
+      start = lift(problem, last.nodes, n);
     level.offer(start, false);
     level.newton(start, true);
-    if (!level.done(last)) {
-      level.distance(start, 15);
+    const double factor = final ? enough_at_last : enough;
+    if (!level.done(last, factor) && runner_up.score.valid && runner_up.nodes.n == n - 1) {
+      // Different nodes of the degree before may lead on where the best do not.
+      Nodes<dim> other;
+      other.n = n;
+      project(problem, runner_up.nodes, rung.from_last.data(), true, other);
+      level.newton(other, false);
+      level.descend(other);
+    }
+    if (!level.done(last, factor)) {
+      level.descend(start);
       const Nodes<dim> arc = arc_length_nodes(problem, n);
       level.offer(arc, false);
       level.newton(arc, false);
-      level.distance(arc, 15);
-      if (n >= 3 && second.nodes.n > 0) {
+      level.descend(arc);
+      if (n >= 3 && second.nodes.n == n - 2) {
         project(problem, second.nodes, rung.from_second.data(), true, start);
         level.newton(start, false);
-        level.distance(start, 15);
+        level.descend(start);
       }
       const Nodes<dim> curved = curvature_nodes(problem, n);
       level.newton(curved, false);
-      level.distance(curved, 15);
+      level.descend(curved);
     }
-    if (!level.done(last) && level.best.score.valid) {
-      for (const double density : {0.5, 0.25}) {
+    for (const double density : {0.5, 0.25}) {
+      if (level.done(last, factor) || !level.best.score.valid) break;
+      const Found<dim> from = level.best;
+      level.descend(crowded(problem, from.nodes, from.score.slow_xi, density));
+      level.descend(crowded(problem, from.nodes, from.score.far_xi, density));
+    }
+    if (final)
+      for (const double density : {0.9, 0.7, 0.5, 0.3}) {
+        if (level.done(last, factor) || !level.best.score.valid) break;
         const Found<dim> from = level.best;
-        level.distance(crowded(problem, from.nodes, from.score.slow_xi, density), 15);
-        level.distance(crowded(problem, from.nodes, from.score.far_xi, density), 15);
+        level.explore(crowded(problem, from.nodes, from.score.slow_xi, density), 2);
+        level.explore(crowded(problem, from.nodes, from.score.far_xi, density), 2);
       }
-    }
     if (final && !level.at_floor()) {
       // Never worse than the simple placements.
       level.offer(arc_length_nodes(problem, n), false);
@@ -251,12 +310,16 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
           level.offer(nodes, false);
       }
     }
-    if (!level.at_floor()) level.polish(final ? 40 : 8);
+    const bool gained = level.done(last, enough);
+    if (!level.at_floor() && (final || !gained)) level.polish(final ? 40 : 8);
     second = last;
     last = level.best;
+    runner_up = level.runner_up;
     if (final) {
       best = level.best;
       root = level.root;
+    } else if (!gained && last.score.d2 < nearly_exact * problem.length) {
+      n = degree - 1;
     }
   }
 }
