@@ -125,7 +125,8 @@ class Level {
   Level(const Problem<dim>& problem, int degree, Effort& effort)
       : problem_(problem), degree_(degree), effort_(effort) {}
   Found<dim> best, root;
-  Found<dim> runner_up;  // the best nodes that are not nearly the best ones
+  Found<dim> plain;  // the best of those offered before plain_over
+  bool plain_over = false;
 
   Score offer(const Nodes<dim>& nodes, bool is_root) {
     const Score score = measure(problem_, nodes);
@@ -163,16 +164,19 @@ class Level {
       keep(aside, found, false);
     }
   }
-  void polish(int iterations) {
-    if (!best.score.valid) return;
-    Nodes<dim> nodes = best.nodes;
-    Score score = best.score;
+  // A few steps of least distance from nodes found.
+  void polish(const Found<dim>& from, int iterations) {
+    if (!from.score.valid || at_floor()) return;
+    Nodes<dim> nodes = from.nodes;
+    Score score = from.score;
     effort_.distance += minimise_distance(problem_, nodes, score, iterations);
     keep(nodes, score, false);
   }
   bool done(const Found<dim>& last, double factor) const {
-    return at_floor() ||
-           (best.score.valid && last.score.valid && best.score.d2 < factor * last.score.d2);
+    return at_floor() || fell(best, last, factor);
+  }
+  static bool fell(const Found<dim>& found, const Found<dim>& last, double factor) {
+    return found.score.valid && last.score.valid && found.score.d2 < factor * last.score.d2;
   }
   bool at_floor() const {
     return best.score.valid && best.score.d2 < floor_of_length * problem_.length;
@@ -182,27 +186,9 @@ class Level {
   void keep(const Nodes<dim>& nodes, const Score& score, bool is_root) {
     const Found<dim> found{nodes, score,
                            is_root ? CurveKind::equal_tangent : CurveKind::orthogonal_distance};
-    if (different(nodes, best)) {
-      if (better(score, best)) {
-        runner_up = best;
-        best = found;
-      } else if (better(score, runner_up)) {
-        runner_up = found;
-      }
-    } else if (better(score, best)) {
-      best = found;
-    }
+    if (better(score, best)) best = found;
+    if (!plain_over && better(score, plain)) plain = found;
     if (is_root && better(score, root)) root = found;
-  }
-  // Some node is away by a fifth of the smaller gap beside it.
-  bool different(const Nodes<dim>& nodes, const Found<dim>& from) const {
-    if (from.nodes.n != degree_) return true;
-    for (std::size_t i = 1; i < std::size_t(degree_); ++i) {
-      const auto& t = from.nodes.t;
-      if (std::fabs(nodes.t[i] - t[i]) > 0.2 * std::min(t[i] - t[i - 1], t[i + 1] - t[i]))
-        return true;
-    }
-    return false;
   }
   bool better(const Score& score, const Found<dim>& than) const {
     if (than.nodes.n != degree_) return true;  // nothing yet
@@ -213,6 +199,50 @@ class Level {
   int degree_;
   Effort& effort_;
 };
+
+// Nodes of degree n from those of a lower one.
+template <int dim>
+Nodes<dim> raised(const Problem<dim>& problem, const Nodes<dim>& lower, int n) {
+  if (lower.n < n - 2) return lift(problem, lower, n);
+  const CurveRung& rung = problem.tables.rung(n);
+  Nodes<dim> next;
+  next.n = n;
+  project(problem, lower, (lower.n == n - 1 ? rung.from_last : rung.from_second).data(), true,
+          next);
+  return next;
+}
+
+// Starts that know nothing of distances: the two degrees before, arc length, curvature.
+template <int dim>
+void search_plain(const Problem<dim>& problem, Level<dim>& level, const Nodes<dim>& start,
+                  const Found<dim>& before, const Found<dim>& last, double factor) {
+  const int n = start.n;
+  level.descend(start);
+  const Nodes<dim> arc = arc_length_nodes(problem, n);
+  level.offer(arc, false);
+  level.newton(arc, false);
+  level.descend(arc);
+  if (before.nodes.n > 0 && !level.done(last, factor)) {
+    const Nodes<dim> other = raised(problem, before.nodes, n);
+    level.newton(other, false);
+    level.descend(other);
+  }
+  if (!level.done(last, factor)) {
+    const Nodes<dim> curved = curvature_nodes(problem, n);
+    level.newton(curved, false);
+    level.descend(curved);
+  }
+}
+
+// Never worse than the simple placements.
+template <int dim>
+void offer_simple(const Problem<dim>& problem, Level<dim>& level, int n) {
+  level.offer(arc_length_nodes(problem, n), false);
+  for (const CurveMethod method : {CurveMethod::chord, CurveMethod::standard}) {
+    Nodes<dim> nodes;
+    if (projected_nodes(problem, n, method, nodes) == CurveStatus::ok) level.offer(nodes, false);
+  }
+}
 
 }  // namespace
 
@@ -241,11 +271,14 @@ bool quick_climb(const Problem<dim>& problem, int degree, Found<dim>& found, Eff
 template <int dim>
 void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>& root,
            Effort& effort) {
-  Found<dim> last{problem.chord(), {}, CurveKind::placed}, second, runner_up;
+  // Two chains: the best nodes of each degree, and the best without crowded starts. The first alone
+  // loses its way: on curves of low regularity better nodes of one degree lead to worse ones of
+  // the next.
+  Found<dim> last{problem.chord(), {}, CurveKind::placed};
   last.score = measure(problem, last.nodes);
   best = root = last;
+  Found<dim> plain = last, before;
   for (int n = 2; n <= degree; ++n) {
-    const CurveRung& rung = problem.tables.rung(n);
     const bool final = n == degree;
     if (last.score.valid && last.score.d2 < floor_of_length * problem.length) {
       // Exact already: the same polynomial with more nodes is a root too, to rounding.
@@ -256,37 +289,17 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
       return;
     }
     Level<dim> level(problem, n, effort);
-    Nodes<dim> start;
-    start.n = n;
-    if (last.nodes.n == n - 1)
-      project(problem, last.nodes, rung.from_last.data(), true, start);
-    else
-      start = lift(problem, last.nodes, n);
+    const double factor = final ? enough_at_last : enough;
+    const Nodes<dim> start = raised(problem, plain.nodes, n);
     level.offer(start, false);
     level.newton(start, true);
-    const double factor = final ? enough_at_last : enough;
-    if (!level.done(last, factor) && runner_up.score.valid && runner_up.nodes.n == n - 1) {
-      // Different nodes of the degree before may lead on where the best do not.
-      Nodes<dim> other;
-      other.n = n;
-      project(problem, runner_up.nodes, rung.from_last.data(), true, other);
+    if (!level.done(plain, factor)) search_plain(problem, level, start, before, plain, factor);
+    level.polish(level.plain, 8);
+    level.plain_over = true;
+    if (plain.score.d2 != last.score.d2) {
+      const Nodes<dim> other = raised(problem, last.nodes, n);
       level.newton(other, false);
-      level.descend(other);
-    }
-    if (!level.done(last, factor)) {
-      level.descend(start);
-      const Nodes<dim> arc = arc_length_nodes(problem, n);
-      level.offer(arc, false);
-      level.newton(arc, false);
-      level.descend(arc);
-      if (n >= 3 && second.nodes.n == n - 2) {
-        project(problem, second.nodes, rung.from_second.data(), true, start);
-        level.newton(start, false);
-        level.descend(start);
-      }
-      const Nodes<dim> curved = curvature_nodes(problem, n);
-      level.newton(curved, false);
-      level.descend(curved);
+      if (!level.done(last, factor)) level.descend(other);
     }
     for (const double density : {0.5, 0.25}) {
       if (level.done(last, factor) || !level.best.score.valid) break;
@@ -294,31 +307,25 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
       level.descend(crowded(problem, from.nodes, from.score.slow_xi, density));
       level.descend(crowded(problem, from.nodes, from.score.far_xi, density));
     }
-    if (final)
-      for (const double density : {0.9, 0.7, 0.5, 0.3}) {
+    if (final) {
+      for (const double density : {0.8, 0.6, 0.4}) {
         if (level.done(last, factor) || !level.best.score.valid) break;
         const Found<dim> from = level.best;
         level.explore(crowded(problem, from.nodes, from.score.slow_xi, density), 2);
         level.explore(crowded(problem, from.nodes, from.score.far_xi, density), 2);
       }
-    if (final && !level.at_floor()) {
-      // Never worse than the simple placements.
-      level.offer(arc_length_nodes(problem, n), false);
-      for (const CurveMethod method : {CurveMethod::chord, CurveMethod::standard}) {
-        Nodes<dim> nodes;
-        if (projected_nodes(problem, n, method, nodes) == CurveStatus::ok)
-          level.offer(nodes, false);
-      }
+      if (!level.at_floor()) offer_simple(problem, level, n);
     }
+    level.polish(level.best, final ? 40 : 8);
     const bool gained = level.done(last, enough);
-    if (!level.at_floor() && (final || !gained)) level.polish(final ? 40 : 8);
-    second = last;
+    before = plain;
+    plain = level.plain;
     last = level.best;
-    runner_up = level.runner_up;
     if (final) {
       best = level.best;
       root = level.root;
     } else if (!gained && last.score.d2 < nearly_exact * problem.length) {
+      plain = last;
       n = degree - 1;
     }
   }
