@@ -1,5 +1,7 @@
 // Least squares for the normal distance of an interpolant to its curve.
 
+#include <numbers>
+
 #include "bezel/fit/curve_search.hpp"
 
 namespace bezel::curve_search {
@@ -37,7 +39,9 @@ Score measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const Score*
   const CurveRung& rung = problem.tables.rung(nodes.n);
   Start<dim> start(rung, nodes);
   Score score;
-  double sum = 0.0, slowest = HUGE_VAL, furthest = -1.0;
+  double sum = 0.0, furthest = -1.0;
+  std::array<double, std::size_t(4) * max_curve_degree> speeds;
+  int slowest = 0;
   for (int a = 0; a < rung.m; ++a) {
     const double x = rung.xi[std::size_t(a)];
     const Vec<dim> p = combine(rung.value_row(a), nodes);
@@ -46,17 +50,23 @@ Score measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const Score*
     score.foot[std::size_t(a)] = f.s;
     const double distance_squared = dot(f.e, f.e);
     sum += rung.weight[std::size_t(a)] * speed * distance_squared;
-    if (speed < slowest) {
-      slowest = speed;
-      score.slow_xi = x;
-    }
+    speeds[std::size_t(a)] = speed;
+    if (speed < speeds[std::size_t(slowest)]) slowest = a;
     if (distance_squared > furthest) {
       furthest = distance_squared;
       score.far_xi = x;
     }
   }
+  // The least speed lies between points: the vertex of the parabola in the angle through three.
+  double vertex = slowest + 0.5;
+  if (slowest > 0 && slowest + 1 < rung.m) {
+    const double* v = speeds.data() + slowest;
+    const double bend = v[-1] - 2.0 * v[0] + v[1];
+    if (bend > 0.0) vertex += 0.5 * (v[-1] - v[1]) / bend;
+  }
+  score.slow_xi = -std::cos(vertex * std::numbers::pi / rung.m);
   score.d2 = std::isfinite(sum) ? std::sqrt(sum) : HUGE_VAL;
-  score.min_speed = slowest / (0.5 * problem.length);
+  score.min_speed = speeds[std::size_t(slowest)] / (0.5 * problem.length);
   score.valid = nodes.ordered() && score.min_speed >= 1e-3 && std::isfinite(sum);
   return score;
 }

@@ -1,3 +1,6 @@
+#include <sstream>
+#include <cstdlib>
+#include <string>
 #include "bezel/fit/curve_ladder.hpp"
 
 namespace bezel::curve_search {
@@ -224,7 +227,7 @@ void search_plain(const Problem<dim>& problem, Level<dim>& level, const Nodes<di
   level.descend(arc);
   if (before.nodes.n > 0 && !level.done(last, factor)) {
     const Nodes<dim> other = raised(problem, before.nodes, n);
-    level.newton(other, false);
+    level.newton(other, true);
     level.descend(other);
   }
   if (!level.done(last, factor)) {
@@ -307,15 +310,19 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
       level.descend(crowded(problem, from.nodes, from.score.slow_xi, density));
       level.descend(crowded(problem, from.nodes, from.score.far_xi, density));
     }
-    if (final) {
-      for (const double density : {0.8, 0.6, 0.4}) {
+    // Where degrees bring no more gain and are left out, the last one before is searched instead.
+    const bool jumped = last.nodes.n < n - 1;
+    const bool nearly = level.best.score.d2 < nearly_exact * problem.length;
+    if ((final || nearly) && !jumped) {
+      std::vector<double> dens; { const char* e=getenv("DENS"); std::string q=e?e:"0.8 0.95 0.85 0.75 0.65"; std::istringstream is(q); double v; while(is>>v) dens.push_back(v);} 
+      for (const double density : dens) {
         if (level.done(last, factor) || !level.best.score.valid) break;
         const Found<dim> from = level.best;
         level.explore(crowded(problem, from.nodes, from.score.slow_xi, density), 2);
         level.explore(crowded(problem, from.nodes, from.score.far_xi, density), 2);
       }
-      if (!level.at_floor()) offer_simple(problem, level, n);
     }
+    if (final && !level.at_floor()) offer_simple(problem, level, n);
     level.polish(level.best, final ? 40 : 8);
     const bool gained = level.done(last, enough);
     before = plain;
