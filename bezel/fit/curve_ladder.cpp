@@ -1,16 +1,13 @@
-#include <sstream>
-#include <cstdlib>
-#include <string>
 #include "bezel/fit/curve_ladder.hpp"
 
 namespace bezel::curve_search {
 namespace {
 
 // Below this fraction of the length a distance is rounding error.
-constexpr double floor_of_length = 2e-15;
+constexpr double floor_of_length = 4e-15;
 // A degree whose distance falls by this factor needs no closer look; the last degree, by the
 // second.
-constexpr double enough = 0.3, enough_at_last = 0.1;
+constexpr double enough = 0.3, enough_at_last = 0.15;
 // Below this fraction of the length, degrees that bring no gain are left out.
 constexpr double nearly_exact = 1e-12;
 
@@ -312,10 +309,10 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
     }
     // Where degrees bring no more gain and are left out, the last one before is searched instead.
     const bool jumped = last.nodes.n < n - 1;
-    const bool nearly = level.best.score.d2 < nearly_exact * problem.length;
+    const bool nearly =
+        level.best.score.valid && level.best.score.d2 < nearly_exact * problem.length;
     if ((final || nearly) && !jumped) {
-      std::vector<double> dens; { const char* e=getenv("DENS"); std::string q=e?e:"0.8 0.95 0.85 0.75 0.65"; std::istringstream is(q); double v; while(is>>v) dens.push_back(v);} 
-      for (const double density : dens) {
+      for (const double density : {0.8, 0.6, 0.4}) {
         if (level.done(last, factor) || !level.best.score.valid) break;
         const Found<dim> from = level.best;
         level.explore(crowded(problem, from.nodes, from.score.slow_xi, density), 2);
@@ -323,8 +320,8 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
       }
     }
     if (final && !level.at_floor()) offer_simple(problem, level, n);
-    level.polish(level.best, final ? 40 : 8);
     const bool gained = level.done(last, enough);
+    if (final || !gained) level.polish(level.best, final ? 40 : 8);
     before = plain;
     plain = level.plain;
     last = level.best;
