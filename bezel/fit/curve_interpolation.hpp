@@ -61,7 +61,7 @@ struct CurveNodes {
   std::vector<double> t;        ///< -1 = t_0 < ... < t_N = 1; empty when nothing was found
   int newton_iterations = 0;    ///< of all degrees on the way, equal tangent
   int distance_iterations = 0;  ///< of all degrees on the way, least squares (l2 too)
-  double residual = 0.0;  ///< largest |sine-like residual| of the equal-tangent equations at t
+  double residual = 0.0;        ///< largest |2 / L p' x tau| at an inner node, tau the unit tangent
 };
 
 template <int dim>
@@ -79,7 +79,7 @@ struct CurveInterpolant {
 class CurveInterpolator {
  public:
   /// @throws   InputError unless 1 <= max_degree <= 30
-  /// @cost     0.2 ms for degree 10, 3 ms for degree 30
+  /// @cost     25 us for degree 5, 0.2 ms for degree 10, 5 ms for degree 30
   explicit CurveInterpolator(int max_degree = max_curve_degree);
   ~CurveInterpolator();
   CurveInterpolator(CurveInterpolator&&) noexcept;
@@ -90,7 +90,19 @@ class CurveInterpolator {
 
   /// Where the nodes go.
   ///
-  /// @throws   InputError when degree is not in 1..max_degree()
+  /// @param degree  1..max_degree(); 1 has no choice
+  /// @return   t empty when the status says that the method does not apply. The same curve gives
+  ///           the same bits
+  /// @throws   InputError when degree is out of range
+  /// @accuracy standard, chord, arc_length: to rounding. equal_tangent: residual <= 1e-10. The
+  ///           others are the best of a search, no proven minimum
+  /// @cost     degrees 10 and 15: equal_tangent 20 and 50 us on smooth curves that are resolved,
+  ///           best 0.2 to 1.5 ms, on curves of low regularity up to 40 ms at degree 30, for a
+  ///           curve that takes 20 ns an evaluation. Bounded: some 3000 Newton and as many
+  ///           least-squares steps
+  /// @limits   one smooth part: breakpoints count for the length only (interpolate_pieces splits
+  ///           there). Equal tangent in space is a least-squares solution, its residual not zero
+  /// @source   [bjontegaard2009]; docs/methods/curves.md
   template <int dim>
   CurveNodes place(const SmoothCurve<dim>& curve, int degree, CurveMethod method) const;
 
@@ -105,6 +117,10 @@ class CurveInterpolator {
   ///
   /// @param nodal  d + 1 points, 1 <= d <= max_degree(), finite
   /// @throws   InputError otherwise
+  /// @accuracy distances: the nearer of the foot that continues from the point before and the foot
+  ///           beside the nearest of the curve's samples; quadrature errors are seen where the
+  ///           interpolant swings
+  /// @cost     0.1 ms at degree 5, 0.3 ms at degree 30; the first for a degree 1 ms more
   template <int dim>
   CurveErrors errors(const SmoothCurve<dim>& curve, std::span<const Vec<dim>> nodal) const;
 
@@ -143,7 +159,7 @@ std::vector<CurvePiece<dim>> interpolate_pieces(const SmoothCurve<dim>& curve, i
 
 struct AdaptiveCurveOptions {
   double tolerance = 1e-6;  ///< largest distance to the curve, in its length unit
-  int max_pieces = 1000;
+  int max_pieces = 1000;    ///< but at least one per smooth part
 };
 template <int dim>
 struct AdaptiveCurve {
@@ -151,8 +167,12 @@ struct AdaptiveCurve {
   double distance_max = 0.0;  ///< largest of all pieces
   bool reached = false;       ///< distance_max <= tolerance
 };
-/// Few pieces within a distance: the curve is split at its breakpoints and then where needed.
+/// Few pieces within a distance: the curve is split at its breakpoints; each smooth part into the
+/// longest pieces that keep the tolerance, from the left; then the tolerance is lowered as far as
+/// the same number of pieces allows, which spreads the error.
 ///
+/// @return   ascending, ends of neighbours equal bit for bit. Not `reached` when the pieces did not
+///           suffice or the tolerance is below rounding (1e-15 of the length)
 /// @throws   InputError as interpolate, and unless tolerance > 0 and max_pieces >= 1
 template <int dim>
 AdaptiveCurve<dim> interpolate_adaptive(const SmoothCurve<dim>& curve, int degree,

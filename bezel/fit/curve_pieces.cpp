@@ -45,7 +45,8 @@ class Splitter {
   std::vector<double> split(double a, double b, double tolerance, std::size_t most,
                             double& largest) {
     std::vector<double> ends{a};
-    const double least = 1e-6 * (b - a);
+    // Neither pieces nor tolerances without end.
+    const double least = 1e-6 * (b - a), rounding = 1e-15 * curve_.length();
     double width = b - a;
     largest = 0.0;
     while (ends.back() < b && ends.size() <= most) {
@@ -55,7 +56,7 @@ class Splitter {
       for (int trial = 0; trial < 24; ++trial) {
         const double end = b - start - width < 1e-3 * width ? b : start + width;
         const double d = distance(start, end);
-        if (d <= tolerance || width <= least) {
+        if (d <= std::max(tolerance, rounding) || width <= least) {
           good = end - start;
           good_distance = d;
           if (end == b) break;
@@ -135,6 +136,7 @@ AdaptiveCurve<dim> interpolate_adaptive(const SmoothCurve<dim>& curve, int degre
     std::vector<double> ends = splitter.split(a, b, options.tolerance, room, largest);
     if (ends.back() != b) {
       // No room: the rest of the part is one piece, and the result says that it is not reached.
+      if (ends.size() == 1) ends.push_back(b);
       ends.back() = b;
     } else if (ends.size() > 2) {
       // The last piece took what was left. The least tolerance that needs no more pieces spreads

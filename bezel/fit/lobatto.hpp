@@ -46,7 +46,7 @@ class LobattoBasis {
   /// @accuracy computed in double-double: rounded correctly but for 1e-20 of the largest value
   ///           (degree 30). The map itself magnifies an error of the values by up to 0.4 2^d;
   ///           the curve evaluated from the coefficients does not
-  /// @cost     3 us at degree 10, 30 us at degree 30, per coordinate
+  /// @cost     5 us at degree 10, 35 us at degree 30, per coordinate
   /// @source   docs/methods/curves.md
   template <int dim>
   std::vector<Vec<dim>> to_bernstein(std::span<const Vec<dim>> nodal) const;

@@ -236,6 +236,21 @@ TEST(CurvePieces, AdaptiveSaysWhenThereIsNoRoom) {
   EXPECT_EQ(found.pieces.back().t1, 1.0);
 }
 
+TEST(CurvePieces, EverySmoothPartHasAPieceAlsoWithoutRoom) {
+  const auto found = interpolate_adaptive(two_arcs(true), 2, {.tolerance = 1e-9, .max_pieces = 1});
+  EXPECT_FALSE(found.reached);
+  ASSERT_EQ(found.pieces.size(), 2u);
+  EXPECT_EQ(found.pieces[0].t1, 0.0);
+  EXPECT_EQ(found.pieces[1].t1, 1.0);
+}
+
+TEST(CurvePieces, AToleranceBelowRoundingEnds) {
+  const auto found = interpolate_adaptive(paper_curve(1), 7, {.tolerance = 1e-30});
+  EXPECT_FALSE(found.reached);
+  EXPECT_LE(found.pieces.size(), 8u);
+  EXPECT_LE(found.distance_max, 1e-14);
+}
+
 TEST(CurvePieces, RefusesBadOptions) {
   const PlaneCurve curve = paper_curve(1);
   EXPECT_THROW(static_cast<void>(interpolate_adaptive(curve, 3, {.tolerance = 0.0})), InputError);
