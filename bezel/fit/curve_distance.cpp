@@ -1,39 +1,86 @@
 // Least squares for the normal distance of an interpolant to its curve.
 
+#include <numbers>
+
 #include "bezel/fit/curve_search.hpp"
 
 namespace bezel::curve_search {
 using small::Vector;
 
+namespace {
+
+// Where to look for the foot of the a-th point: the interpolant of the parameters there, if it is
+// between the parameters of the nodes beside it. Calls in ascending order of a.
+template <int dim>
+class Start {
+ public:
+  Start(const CurveRung& rung, const Nodes<dim>& nodes) : rung_(rung), nodes_(nodes) {}
+  double operator()(int a) {
+    const auto xi = rung_.basis.nodes();
+    const double x = rung_.xi[std::size_t(a)];
+    while (x > xi[k_ + 1]) ++k_;
+    const double t0 = nodes_.t[k_], t1 = nodes_.t[k_ + 1];
+    double guess = 0.0;
+    for (int k = 0; k <= nodes_.n; ++k) guess += rung_.value_row(a)[k] * nodes_.t[std::size_t(k)];
+    if (guess >= t0 && guess <= t1) return guess;
+    return t0 + (t1 - t0) * ((x - xi[k_]) / (xi[k_ + 1] - xi[k_]));
+  }
+
+ private:
+  const CurveRung& rung_;
+  const Nodes<dim>& nodes_;
+  std::size_t k_ = 0;
+};
+
+}  // namespace
+
 template <int dim>
 Score measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const Score* guess) {
   const CurveRung& rung = problem.tables.rung(nodes.n);
-  const auto xi = rung.basis.nodes();
+  Start<dim> start(rung, nodes);
   Score score;
-  double sum = 0.0, slowest = HUGE_VAL;
-  for (int a = 0, k = 0; a < rung.m; ++a) {
+  double sum = 0.0, furthest = -1.0;
+  std::array<double, std::size_t(4) * max_curve_degree> speeds;
+  int slowest = 0;
+  for (int a = 0; a < rung.m; ++a) {
     const double x = rung.xi[std::size_t(a)];
     const Vec<dim> p = combine(rung.value_row(a), nodes);
-    const Vec<dim> slope = combine(rung.slope_row(a), nodes);
-    double start;
-    if (guess) {
-      start = guess->foot[std::size_t(a)];
-    } else {
-      while (x > xi[std::size_t(k) + 1]) ++k;
-      const double part = (x - xi[std::size_t(k)]) / (xi[std::size_t(k) + 1] - xi[std::size_t(k)]);
-      start =
-          nodes.t[std::size_t(k)] + part * (nodes.t[std::size_t(k) + 1] - nodes.t[std::size_t(k)]);
-    }
-    const Foot<dim> f = foot(problem.curve, p, start);
-    const double speed = norm(slope);
-    slowest = std::min(slowest, speed);
+    const double speed = norm(combine(rung.slope_row(a), nodes));
+    const Foot<dim> f = foot(problem.curve, p, guess ? guess->foot[std::size_t(a)] : start(a));
     score.foot[std::size_t(a)] = f.s;
-    sum += rung.weight[std::size_t(a)] * speed * dot(f.e, f.e);
+    const double distance_squared = dot(f.e, f.e);
+    sum += rung.weight[std::size_t(a)] * speed * distance_squared;
+    speeds[std::size_t(a)] = speed;
+    if (speed < speeds[std::size_t(slowest)]) slowest = a;
+    if (distance_squared > furthest) {
+      furthest = distance_squared;
+      score.far_xi = x;
+    }
   }
+  // The least speed lies between points: the vertex of the parabola in the angle through three.
+  double vertex = slowest + 0.5;
+  if (slowest > 0 && slowest + 1 < rung.m) {
+    const double* v = speeds.data() + slowest;
+    const double bend = v[-1] - 2.0 * v[0] + v[1];
+    if (bend > 0.0) vertex += 0.5 * (v[-1] - v[1]) / bend;
+  }
+  score.slow_xi = -std::cos(vertex * std::numbers::pi / rung.m);
   score.d2 = std::isfinite(sum) ? std::sqrt(sum) : HUGE_VAL;
-  score.min_speed = slowest / (0.5 * problem.length);
+  score.min_speed = speeds[std::size_t(slowest)] / (0.5 * problem.length);
   score.valid = nodes.ordered() && score.min_speed >= 1e-3 && std::isfinite(sum);
   return score;
+}
+
+template <int dim>
+double rough_distance(const Problem<dim>& problem, const Nodes<dim>& nodes) {
+  const CurveRung& rung = problem.tables.rung(nodes.n);
+  Start<dim> start(rung, nodes);
+  double sum = 0.0;
+  for (int a = 1; a < rung.m; a += 4) {
+    const Foot<dim> f = foot(problem.curve, combine(rung.value_row(a), nodes), start(a));
+    sum += rung.weight[std::size_t(a)] * dot(f.e, f.e);
+  }
+  return std::sqrt(4.0 * 0.5 * problem.length * sum);
 }
 
 template <int dim>
@@ -44,30 +91,29 @@ int minimise_distance(const Problem<dim>& problem, Nodes<dim>& nodes, Score& sco
   // |p'| is frozen in each step, and the derivative of a distance is exact: the foot moves along
   // the curve. In the plane the distance has a sign and gives one residual; in space the residual
   // is the vector normal to the curve.
-  const auto build = [&](NormalEquations& equations) {
+  const auto build = [&](small::LeastSquares& squares, const Vector& unit) {
     for (int a = 0; a < rung.m; ++a) {
       const Vec<dim> p = combine(rung.value_row(a), nodes);
       const Vec<dim> slope = combine(rung.slope_row(a), nodes);
       const CurveJet<dim> at = problem.curve(score.foot[std::size_t(a)]);
       const Vec<dim> e = p - at.x;
       const Vec<dim> tau = (1.0 / norm(at.d1)) * at.d1;
-      const double weight = rung.weight[std::size_t(a)] * norm(slope);
+      const double weight = std::sqrt(rung.weight[std::size_t(a)] * norm(slope));
       const double* l = rung.value_row(a) + 1;
       Vector row;
       if constexpr (dim == 2) {
         for (int k = 0; k < size; ++k)
           row[std::size_t(k)] =
-              l[k] * equations.unit[std::size_t(k)] * cross(tau, nodes.g[std::size_t(k) + 1].d1);
-        equations.add(size, weight, row.data(), cross(tau, e));
+              l[k] * unit[std::size_t(k)] * cross(tau, nodes.g[std::size_t(k) + 1].d1);
+        squares.add(weight, row.data(), -cross(tau, e));
       } else {
         const Vec<dim> across = e - dot(e, tau) * tau;
         for (int c = 0; c < dim; ++c) {
           for (int k = 0; k < size; ++k) {
             const Vec<dim>& d1 = nodes.g[std::size_t(k) + 1].d1;
-            row[std::size_t(k)] =
-                l[k] * equations.unit[std::size_t(k)] * (d1[c] - dot(d1, tau) * tau[c]);
+            row[std::size_t(k)] = l[k] * unit[std::size_t(k)] * (d1[c] - dot(d1, tau) * tau[c]);
           }
-          equations.add(size, weight, row.data(), across[c]);
+          squares.add(weight, row.data(), -across[c]);
         }
       }
     }
@@ -84,6 +130,8 @@ int minimise_distance(const Problem<dim>& problem, Nodes<dim>& nodes, Score& sco
 
 template Score measure(const Problem<2>&, const Nodes<2>&, const Score*);
 template Score measure(const Problem<3>&, const Nodes<3>&, const Score*);
+template double rough_distance(const Problem<2>&, const Nodes<2>&);
+template double rough_distance(const Problem<3>&, const Nodes<3>&);
 template int minimise_distance(const Problem<2>&, Nodes<2>&, Score&, int);
 template int minimise_distance(const Problem<3>&, Nodes<3>&, Score&, int);
 

@@ -97,7 +97,7 @@ int GraphError<dim>::minimise(Nodes<dim>& nodes, int iterations) const {
   Value value = value_of(nodes);
   // x_N(eta) = x_a stays true as node k moves, so that y_N(eta) changes by l_k (y'_k - sigma x'_k)
   // with sigma = y_N' / x_N' at eta.
-  const auto build = [&](NormalEquations& equations) {
+  const auto build = [&](small::LeastSquares& squares, const small::Vector& unit) {
     const auto nodal = nodal_of(nodes);
     std::array<double, max_nodes> l, slope_row;
     for (std::size_t a = 0; a < x_.size(); ++a) {
@@ -116,9 +116,8 @@ int GraphError<dim>::minimise(Nodes<dim>& nodes, int iterations) const {
         small::Vector row;
         const double sigma = slope[c] / slope[0];
         for (std::size_t k = 1; k < std::size_t(n); ++k)
-          row[k - 1] =
-              -l[k] * equations.unit[k - 1] * (nodes.g[k].d1[c] - sigma * nodes.g[k].d1[0]);
-        equations.add(n - 1, weight_[a], row.data(), point_[a][c] - p[c]);
+          row[k - 1] = -l[k] * unit[k - 1] * (nodes.g[k].d1[c] - sigma * nodes.g[k].d1[0]);
+        squares.add(std::sqrt(weight_[a]), row.data(), p[c] - point_[a][c]);
       }
     }
   };

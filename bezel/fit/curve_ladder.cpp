@@ -4,9 +4,12 @@ namespace bezel::curve_search {
 namespace {
 
 // Below this fraction of the length a distance is rounding error.
-constexpr double floor_of_length = 2e-15;
-// A degree whose distance falls by this factor needs no closer look.
-constexpr double enough = 0.3;
+constexpr double floor_of_length = 4e-15;
+// A degree whose distance falls by this factor needs no closer look; the last degree, by the
+// second.
+constexpr double enough = 0.3, enough_at_last = 0.15;
+// Below this fraction of the length, degrees that bring no gain are left out.
+constexpr double nearly_exact = 1e-12;
 
 // Nodes of degree `next.n` from those of a lower degree: feet of the points of its interpolant.
 //
@@ -65,6 +68,25 @@ Nodes<dim> lift(const Problem<dim>& problem, const Nodes<dim>& lower, int degree
   return next;
 }
 
+// Nodes after a change of parameter that gives a part `density` of its speed at xi = c, so that the
+// nodes crowd there: phi(c + h u) = c + h (b u + (1 - b) u^3) on both sides, h = +-1 - c.
+template <int dim>
+Nodes<dim> crowded(const Problem<dim>& problem, const Nodes<dim>& nodes, double c, double density) {
+  const CurveRung& rung = problem.tables.rung(nodes.n);
+  const auto xi = rung.basis.nodes();
+  const std::size_t width = std::size_t(nodes.n) + 1;
+  std::array<double, max_nodes * max_nodes> rows;
+  for (std::size_t j = 0; j < width; ++j) {
+    const double h = xi[j] < c ? -1.0 - c : 1.0 - c, u = (xi[j] - c) / h;
+    rung.basis.values(c + h * (density * u + (1.0 - density) * u * u * u),
+                      std::span(rows).subspan(j * width, width));
+  }
+  Nodes<dim> next;
+  next.n = nodes.n;
+  project(problem, nodes, rows.data(), true, next);
+  return next;
+}
+
 // Nodes spread by a density of |curvature|^(1/3) + a tenth of its mean, per arc length.
 template <int dim>
 Nodes<dim> curvature_nodes(const Problem<dim>& problem, int degree) {
@@ -103,6 +125,8 @@ class Level {
   Level(const Problem<dim>& problem, int degree, Effort& effort)
       : problem_(problem), degree_(degree), effort_(effort) {}
   Found<dim> best, root;
+  Found<dim> plain;  // the best of those offered before plain_over
+  bool plain_over = false;
 
   Score offer(const Nodes<dim>& nodes, bool is_root) {
     const Score score = measure(problem_, nodes);
@@ -116,22 +140,43 @@ class Level {
     if (nodes.ordered()) offer(nodes, r.converged);
   }
   // Least distance from a start, then Newton from there.
-  void distance(Nodes<dim> nodes, int iterations) {
+  void descend(Nodes<dim> nodes) {
     Score score = measure(problem_, nodes);
-    effort_.distance += minimise_distance(problem_, nodes, score, iterations);
+    effort_.distance += minimise_distance(problem_, nodes, score, 15);
     keep(nodes, score, false);
     if (score.valid) newton(nodes, false);
   }
-  void polish(int iterations) {
-    if (!best.score.valid) return;
-    Nodes<dim> nodes = best.nodes;
-    Score score = best.score;
+  // Least distance and Newton in turn. Newton leaves valleys in which the distance falls slowly,
+  // also where it does not converge; a few steps of least distance then follow from there.
+  void explore(Nodes<dim> nodes, int rounds) {
+    Score score = measure(problem_, nodes);
+    for (int round = 0; round < rounds; ++round) {
+      effort_.distance += minimise_distance(problem_, nodes, score, round == 0 ? 8 : 15);
+      keep(nodes, score, false);
+      if (!score.valid) return;
+      Nodes<dim> aside = nodes;
+      const NewtonResult r = solve_tangents(problem_, aside, false);
+      effort_.newton += r.iterations;
+      if (!aside.ordered()) continue;
+      Score found = offer(aside, r.converged);
+      if (!found.valid) continue;
+      effort_.distance += minimise_distance(problem_, aside, found, 8);
+      keep(aside, found, false);
+    }
+  }
+  // A few steps of least distance from nodes found.
+  void polish(const Found<dim>& from, int iterations) {
+    if (!from.score.valid || at_floor()) return;
+    Nodes<dim> nodes = from.nodes;
+    Score score = from.score;
     effort_.distance += minimise_distance(problem_, nodes, score, iterations);
     keep(nodes, score, false);
   }
-  bool done(const Found<dim>& last) const {
-    return at_floor() ||
-           (best.score.valid && last.score.valid && best.score.d2 < enough * last.score.d2);
+  bool done(const Found<dim>& last, double factor) const {
+    return at_floor() || fell(best, last, factor);
+  }
+  static bool fell(const Found<dim>& found, const Found<dim>& last, double factor) {
+    return found.score.valid && last.score.valid && found.score.d2 < factor * last.score.d2;
   }
   bool at_floor() const {
     return best.score.valid && best.score.d2 < floor_of_length * problem_.length;
@@ -142,6 +187,7 @@ class Level {
     const Found<dim> found{nodes, score,
                            is_root ? CurveKind::equal_tangent : CurveKind::orthogonal_distance};
     if (better(score, best)) best = found;
+    if (!plain_over && better(score, plain)) plain = found;
     if (is_root && better(score, root)) root = found;
   }
   bool better(const Score& score, const Found<dim>& than) const {
@@ -153,6 +199,50 @@ class Level {
   int degree_;
   Effort& effort_;
 };
+
+// Nodes of degree n from those of a lower one.
+template <int dim>
+Nodes<dim> raised(const Problem<dim>& problem, const Nodes<dim>& lower, int n) {
+  if (lower.n < n - 2) return lift(problem, lower, n);
+  const CurveRung& rung = problem.tables.rung(n);
+  Nodes<dim> next;
+  next.n = n;
+  project(problem, lower, (lower.n == n - 1 ? rung.from_last : rung.from_second).data(), true,
+          next);
+  return next;
+}
+
+// Starts that know nothing of distances: the two degrees before, arc length, curvature.
+template <int dim>
+void search_plain(const Problem<dim>& problem, Level<dim>& level, const Nodes<dim>& start,
+                  const Found<dim>& before, const Found<dim>& last, double factor) {
+  const int n = start.n;
+  level.descend(start);
+  const Nodes<dim> arc = arc_length_nodes(problem, n);
+  level.offer(arc, false);
+  level.newton(arc, false);
+  level.descend(arc);
+  if (before.nodes.n > 0 && !level.done(last, factor)) {
+    const Nodes<dim> other = raised(problem, before.nodes, n);
+    level.newton(other, true);
+    level.descend(other);
+  }
+  if (!level.done(last, factor)) {
+    const Nodes<dim> curved = curvature_nodes(problem, n);
+    level.newton(curved, false);
+    level.descend(curved);
+  }
+}
+
+// Never worse than the simple placements.
+template <int dim>
+void offer_simple(const Problem<dim>& problem, Level<dim>& level, int n) {
+  level.offer(arc_length_nodes(problem, n), false);
+  for (const CurveMethod method : {CurveMethod::chord, CurveMethod::standard}) {
+    Nodes<dim> nodes;
+    if (projected_nodes(problem, n, method, nodes) == CurveStatus::ok) level.offer(nodes, false);
+  }
+}
 
 }  // namespace
 
@@ -181,15 +271,15 @@ bool quick_climb(const Problem<dim>& problem, int degree, Found<dim>& found, Eff
 template <int dim>
 void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>& root,
            Effort& effort) {
-  Found<dim> last{problem.chord(), {}, CurveKind::placed}, second;
+  // Two chains: the best nodes of each degree, and the best without crowded starts. The first alone
+  // loses its way: on curves of low regularity better nodes of one degree lead to worse ones of
+  // the next.
+  Found<dim> last{problem.chord(), {}, CurveKind::placed};
   last.score = measure(problem, last.nodes);
   best = root = last;
+  Found<dim> plain = last, before;
   for (int n = 2; n <= degree; ++n) {
-    const CurveRung& rung = problem.tables.rung(n);
     const bool final = n == degree;
-    Level<dim> level(problem, n, effort);
-    Nodes<dim> start;
-    start.n = n;
     if (last.score.valid && last.score.d2 < floor_of_length * problem.length) {
       // Exact already: the same polynomial with more nodes is a root too, to rounding.
       Level<dim> top(problem, degree, effort);
@@ -198,39 +288,49 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
       root = top.root;
       return;
     }
-    project(problem, last.nodes, rung.from_last.data(), true, start);
+    Level<dim> level(problem, n, effort);
+    const double factor = final ? enough_at_last : enough;
+    const Nodes<dim> start = raised(problem, plain.nodes, n);
     level.offer(start, false);
     level.newton(start, true);
-    if (!level.done(last)) {
-      level.distance(start, 15);
-      const Nodes<dim> arc = arc_length_nodes(problem, n);
-      level.offer(arc, false);
-      level.newton(arc, false);
-      level.distance(arc, 15);
-      if (n >= 3 && second.nodes.n > 0) {
-        project(problem, second.nodes, rung.from_second.data(), true, start);
-        level.newton(start, false);
-        level.distance(start, 15);
-      }
-      const Nodes<dim> curved = curvature_nodes(problem, n);
-      level.newton(curved, false);
-      level.distance(curved, 15);
+    if (!level.done(plain, factor)) search_plain(problem, level, start, before, plain, factor);
+    level.polish(level.plain, 8);
+    level.plain_over = true;
+    if (plain.score.d2 != last.score.d2) {
+      const Nodes<dim> other = raised(problem, last.nodes, n);
+      level.newton(other, false);
+      if (!level.done(last, factor)) level.descend(other);
     }
-    if (final && !level.at_floor()) {
-      // Never worse than the simple placements.
-      level.offer(arc_length_nodes(problem, n), false);
-      for (const CurveMethod method : {CurveMethod::chord, CurveMethod::standard}) {
-        Nodes<dim> nodes;
-        if (projected_nodes(problem, n, method, nodes) == CurveStatus::ok)
-          level.offer(nodes, false);
+    for (const double density : {0.5, 0.25}) {
+      if (level.done(last, factor) || !level.best.score.valid) break;
+      const Found<dim> from = level.best;
+      level.descend(crowded(problem, from.nodes, from.score.slow_xi, density));
+      level.descend(crowded(problem, from.nodes, from.score.far_xi, density));
+    }
+    // Where degrees bring no more gain and are left out, the last one before is searched instead.
+    const bool jumped = last.nodes.n < n - 1;
+    const bool nearly =
+        level.best.score.valid && level.best.score.d2 < nearly_exact * problem.length;
+    if ((final || nearly) && !jumped) {
+      for (const double density : {0.8, 0.6, 0.4}) {
+        if (level.done(last, factor) || !level.best.score.valid) break;
+        const Found<dim> from = level.best;
+        level.explore(crowded(problem, from.nodes, from.score.slow_xi, density), 2);
+        level.explore(crowded(problem, from.nodes, from.score.far_xi, density), 2);
       }
     }
-    if (!level.at_floor()) level.polish(final ? 40 : 8);
-    second = last;
+    if (final && !level.at_floor()) offer_simple(problem, level, n);
+    const bool gained = level.done(last, enough);
+    if (final || !gained) level.polish(level.best, final ? 40 : 8);
+    before = plain;
+    plain = level.plain;
     last = level.best;
     if (final) {
       best = level.best;
       root = level.root;
+    } else if (!gained && last.score.d2 < nearly_exact * problem.length) {
+      plain = last;
+      n = degree - 1;
     }
   }
 }

@@ -129,62 +129,44 @@ Nodes<dim> moved(const Problem<dim>& problem, const Nodes<dim>& nodes, const sma
   return next;
 }
 
-/// Scaled normal equations (J S)^T (J S) z = -(J S)^T r of a least-squares problem in the inner
-/// nodes, S = diag(unit), dt = S z. Only the lower triangle counts.
-struct NormalEquations {
-  small::Matrix matrix;
-  small::Vector gradient;  ///< -(J S)^T r
-  small::Vector unit;      ///< smaller gap beside each inner node
-
-  /// Adds one residual with its row of J S.
-  void add(int size, double weight, const double* row, double residual) {
-    for (int r = 0; r < size; ++r) {
-      const double w = weight * row[r];
-      double* out = matrix[r];
-      for (int k = 0; k <= r; ++k) out[k] += w * row[k];
-      gradient[std::size_t(r)] -= w * residual;
-    }
-  }
-};
-
-/// Levenberg-Marquardt in the inner nodes.
+/// Levenberg-Marquardt in the inner nodes; the unknown of node i is dt_i / unit_i, unit_i the
+/// smaller gap beside it.
 ///
-/// @param build  (equations): adds the residuals at the nodes accepted last
+/// @param build  (squares, unit): adds the rows unit_k dr / dt_k, with right-hand side -r, at the
+///               nodes accepted last
 /// @param accept (next) -> relative gain in cost, when that is positive `next` becomes the state
-/// @return  steps tried. Stops when two gains in a row are below `least_gain`
+/// @return  steps tried. Stops when two gains in a row are below `least_gain` at little damping
 template <int dim, class Build, class Accept>
 int levenberg_marquardt(const Problem<dim>& problem, Nodes<dim>& nodes, int iterations,
                         double least_gain, const Build& build, const Accept& accept) {
   const int size = nodes.n - 1;
-  double mu = 1e-3;
+  constexpr double least_damping = 1e-30, little_damping = 1e-12, most_damping = 1e4;
+  double mu = 1e-6;
   int done = 0, small_gains = 0;
-  NormalEquations equations;
+  small::LeastSquares squares;
+  small::Vector unit;
   while (done < iterations && size > 0) {
     for (int r = 0; r < size; ++r) {
       const double* t = nodes.t.data() + r;
-      std::fill_n(equations.matrix[r], size, 0.0);
-      equations.gradient[std::size_t(r)] = 0.0;
-      equations.unit[std::size_t(r)] = std::min(t[1] - t[0], t[2] - t[1]);
+      unit[std::size_t(r)] = std::min(t[1] - t[0], t[2] - t[1]);
     }
-    build(equations);
-    double largest = 0.0;
-    for (int r = 0; r < size; ++r) largest = std::max(largest, equations.matrix[r][r]);
+    squares.start(size);
+    build(squares, unit);
+    squares.factor();
     double gain = 0.0;
-    while (mu < 1e6 && !(gain > 0.0) && done < iterations) {
+    while (mu < most_damping && !(gain > 0.0) && done < iterations) {
       ++done;
-      small::Matrix damped = equations.matrix;
-      small::Vector step = equations.gradient;
-      for (int r = 0; r < size; ++r) damped[r][r] += mu * largest;
-      if (small::solve_spd(size, damped, step)) {
-        for (int r = 0; r < size; ++r) step[std::size_t(r)] *= equations.unit[std::size_t(r)];
+      small::Vector step;
+      if (squares.solve(mu, step)) {
+        for (int r = 0; r < size; ++r) step[std::size_t(r)] *= unit[std::size_t(r)];
         const Nodes<dim> next = moved(problem, nodes, step, longest_step(nodes, step));
         if (next.ordered()) gain = accept(next);
         if (gain > 0.0) nodes = next;
       }
-      mu = gain > 0.0 ? std::max(0.1 * mu, 1e-16) : 10.0 * mu;
+      mu = gain > 0.0 ? std::max(0.02 * mu, least_damping) : 20.0 * mu;
     }
     if (!(gain > 0.0)) break;
-    small_gains = gain >= least_gain ? 0 : small_gains + 1;
+    small_gains = gain >= least_gain || mu > little_damping ? 0 : small_gains + 1;
     if (small_gains == 2) break;
   }
   return done;
@@ -202,20 +184,27 @@ struct NewtonResult {
 /// Newton on the equal-tangent equations (in space: damped Gauss-Newton on their squares), then
 /// with a line search, then Levenberg-Marquardt. `nodes` becomes the best iterate.
 ///
-/// @param patient  false: stop after the plain Newton steps
+/// @param patient    false: stop after the plain Newton steps
+/// @param converged  the residual of a root
 template <int dim>
-NewtonResult solve_tangents(const Problem<dim>& problem, Nodes<dim>& nodes, bool patient);
+NewtonResult solve_tangents(const Problem<dim>& problem, Nodes<dim>& nodes, bool patient,
+                            double converged = 1e-12);
 
 /// Mean square distance of an interpolant to the curve, measured while searching.
 struct Score {
-  double d2 = HUGE_VAL;                                        ///< sqrt(int d^2 |p'|)
-  double min_speed = 0.0;                                      ///< smallest |p'| / (L / 2)
-  bool valid = false;                                          ///< nodes ordered, min_speed >= 1e-3
+  double d2 = HUGE_VAL;                ///< sqrt(int d^2 |p'|)
+  double min_speed = 0.0;              ///< smallest |p'| / (L / 2)
+  bool valid = false;                  ///< nodes ordered, min_speed >= 1e-3
+  double slow_xi = 0.0, far_xi = 0.0;  ///< where |p\'| is smallest, and d largest
   std::array<double, std::size_t(4) * max_curve_degree> foot;  ///< parameters of the feet
 };
 /// @param guess  feet to start from; null: between the nodes
 template <int dim>
 Score measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const Score* guess = nullptr);
+
+/// About the same d2 from one point in four: a check.
+template <int dim>
+double rough_distance(const Problem<dim>& problem, const Nodes<dim>& nodes);
 
 /// Levenberg-Marquardt on the mean square distance; `nodes` and `score` become the best.
 ///

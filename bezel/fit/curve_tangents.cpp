@@ -43,23 +43,18 @@ double sum_of_squares(int size, const Vector& f) {
   return sum;
 }
 
-// F and dF/dt; returns the largest |F|.
-double linearise(const Problem<2>& problem, const CurveRung& rung, const Nodes<2>& nodes, Vector& f,
-                 Matrix& jacobian) {
+// dF/dt.
+void linearise(const Problem<2>& problem, const CurveRung& rung, const Nodes<2>& nodes,
+               Matrix& jacobian) {
   const double scale = 2.0 / problem.length;
-  double largest = 0.0;
   for (int i = 1; i < nodes.n; ++i) {
     const Tangent<2> r = tangent(rung, nodes, i);
-    const double value = scale * cross(r.slope, r.tau);
-    f[std::size_t(i) - 1] = value;
-    largest = std::max(largest, std::fabs(value));
+    const Vec2 tau = scale * r.tau;
     const double* d = rung.d_row(i);
     double* row = jacobian[i - 1];
-    for (int k = 1; k < nodes.n; ++k)
-      row[k - 1] = scale * d[k] * cross(nodes.g[std::size_t(k)].d1, r.tau);
+    for (int k = 1; k < nodes.n; ++k) row[k - 1] = d[k] * cross(nodes.g[std::size_t(k)].d1, tau);
     row[i - 1] = scale * cross(r.slope, r.dtau);
   }
-  return std::isfinite(largest) ? largest : HUGE_VAL;
 }
 
 }  // namespace
@@ -82,14 +77,15 @@ double tangent_residual(const Problem<3>& problem, const Nodes<3>& nodes) {
   return std::isfinite(largest) ? largest : HUGE_VAL;
 }
 
-// |F| <= converged is a root. Below noise a residual that no longer falls by a factor of three is
-// one too: once p is exact to rounding, sigma_min of the Jacobian falls with the error, and Newton
-// would walk at random along polynomial reparametrisations.
-constexpr double converged = 1e-12, noise = 1e-10;
+// Below noise a residual that no longer falls by a factor of three is a root too: once p is exact
+// to rounding, sigma_min of the Jacobian falls with the error, and Newton would walk at random
+// along polynomial reparametrisations.
+constexpr double noise = 1e-10;
 constexpr int plain_steps = 30, search_steps = 30, damped_steps = 30;
 
 template <>
-NewtonResult solve_tangents(const Problem<2>& problem, Nodes<2>& nodes, bool patient) {
+NewtonResult solve_tangents(const Problem<2>& problem, Nodes<2>& nodes, bool patient,
+                            double converged) {
   const CurveRung& rung = problem.tables.rung(nodes.n);
   const int size = nodes.n - 1;
   Matrix jacobian;
@@ -100,7 +96,7 @@ NewtonResult solve_tangents(const Problem<2>& problem, Nodes<2>& nodes, bool pat
   int without_gain = 0;
   // Plain Newton, steps limited by the gaps only.
   for (int i = 0;; ++i) {
-    const double residual = linearise(problem, rung, now, f, jacobian);
+    const double residual = residual_of(problem, rung, now, f);
     if (residual < result.residual) {
       result.residual = residual;
       nodes = now;
@@ -114,6 +110,7 @@ NewtonResult solve_tangents(const Problem<2>& problem, Nodes<2>& nodes, bool pat
     }
     if (i == plain_steps) break;
     last = residual;
+    linearise(problem, rung, now, jacobian);
     for (int k = 0; k < size; ++k) step[std::size_t(k)] = -f[std::size_t(k)];
     if (!small::solve(size, jacobian, step)) break;
     ++result.iterations;
@@ -127,8 +124,8 @@ NewtonResult solve_tangents(const Problem<2>& problem, Nodes<2>& nodes, bool pat
   now = nodes;
   bool damped = false;
   for (int i = 0; i < search_steps + damped_steps; ++i) {
-    const double residual = linearise(problem, rung, now, f, jacobian);
-    if (residual <= converged) break;
+    if (residual_of(problem, rung, now, f) <= converged) break;
+    linearise(problem, rung, now, jacobian);
     const double cost = sum_of_squares(size, f);
     if (damped) {
       Matrix normal;
@@ -176,7 +173,7 @@ NewtonResult solve_tangents(const Problem<2>& problem, Nodes<2>& nodes, bool pat
 }
 
 template <>
-NewtonResult solve_tangents(const Problem<3>& problem, Nodes<3>& nodes, bool patient) {
+NewtonResult solve_tangents(const Problem<3>& problem, Nodes<3>& nodes, bool patient, double) {
   // Two equations per node for one unknown: their squares are minimised.
   const CurveRung& rung = problem.tables.rung(nodes.n);
   const int size = nodes.n - 1;
@@ -191,7 +188,7 @@ NewtonResult solve_tangents(const Problem<3>& problem, Nodes<3>& nodes, bool pat
     return std::isfinite(sum) ? sum : HUGE_VAL;
   };
   double cost = cost_of(nodes);
-  const auto build = [&](NormalEquations& equations) {
+  const auto build = [&](small::LeastSquares& squares, const Vector& unit) {
     for (int node = 1; node < nodes.n; ++node) {
       const Tangent<3> r = tangent(rung, nodes, node);
       const double along = dot(r.slope, r.tau);
@@ -205,8 +202,8 @@ NewtonResult solve_tangents(const Problem<3>& problem, Nodes<3>& nodes, bool pat
               scale * rung.d_row(node)[k + 1] * (d1[c] - dot(d1, r.tau) * r.tau[c]);
         }
         row[std::size_t(node) - 1] = own[c];
-        for (int k = 0; k < size; ++k) row[std::size_t(k)] *= equations.unit[std::size_t(k)];
-        equations.add(size, 1.0, row.data(), f[c]);
+        for (int k = 0; k < size; ++k) row[std::size_t(k)] *= unit[std::size_t(k)];
+        squares.add(1.0, row.data(), -f[c]);
       }
     }
   };

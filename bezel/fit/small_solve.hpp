@@ -1,5 +1,5 @@
 #pragma once
-// Dense systems of at most 32 unknowns, without allocation.
+// Dense systems and least squares of at most 32 unknowns, without allocation.
 
 #include <algorithm>
 #include <array>
@@ -75,5 +75,105 @@ inline bool solve_spd(int n, Matrix& a, Vector& b) {
   }
   return true;
 }
+
+/// Minimises |A x - b| and |A x - b|^2 + damping |x|^2 by Householder's method: half the digits
+/// that normal equations lose are what the search for exact curves needs.
+class LeastSquares {
+ public:
+  static constexpr int most_rows = 400;
+
+  void start(int columns) {
+    rows_ = 0;
+    columns_ = columns;
+  }
+  /// Adds a row of A and its entry of b, both times a weight.
+  void add(double weight, const double* row, double b) {
+    for (int c = 0; c < columns_; ++c) column(c)[rows_] = weight * row[c];
+    b_[std::size_t(rows_++)] = weight * b;
+  }
+  /// Reduces A to a triangle; solve() may then be called with any damping. Rows added: at least as
+  /// many as columns.
+  void factor() {
+    for (int c = 0; c < columns_; ++c) {
+      diagonal_[std::size_t(c)] = reduce(column(c), c, rows_);
+      for (int k = c + 1; k < columns_; ++k) reflect(column(c), c, rows_, column(k));
+      reflect(column(c), c, rows_, b_.data());
+    }
+    largest_ = 0.0;
+    for (int c = 0; c < columns_; ++c) {
+      double sum = diagonal_[std::size_t(c)] * diagonal_[std::size_t(c)];
+      for (int r = 0; r < c; ++r) sum += column(c)[r] * column(c)[r];
+      largest_ = std::max(largest_, sum);
+    }
+  }
+  /// @param mu  damping over the largest |column of A|^2 @return false when not finite
+  bool solve(double mu, Vector& x) const {
+    // The triangle above a diagonal block: column c of both has entries in rows 0..c of each.
+    std::array<double, std::size_t(2) * capacity * capacity> work{};
+    std::array<double, std::size_t(2) * capacity> b{};
+    const int n = columns_;
+    const auto work_column = [&](int c) { return work.data() + std::size_t(c) * 2 * capacity; };
+    // Order of rows: damping row i directly after triangle row i, so that column c ends at 2 c + 1.
+    for (int c = 0; c < n; ++c) {
+      for (int r = 0; r < c; ++r) work_column(c)[2 * r] = column(c)[r];
+      work_column(c)[2 * c] = diagonal_[std::size_t(c)];
+      work_column(c)[2 * c + 1] = std::sqrt(mu * largest_);
+      b[std::size_t(2 * c)] = b_[std::size_t(c)];
+    }
+    std::array<double, capacity> diagonal;
+    for (int c = 0; c < n; ++c) {
+      const int end = 2 * c + 2;
+      diagonal[std::size_t(c)] = reduce(work_column(c), c, end);
+      for (int k = c + 1; k < n; ++k) reflect(work_column(c), c, end, work_column(k));
+      reflect(work_column(c), c, end, b.data());
+    }
+    for (int r = n; r-- > 0;) {
+      double sum = b[std::size_t(r)];
+      for (int k = r + 1; k < n; ++k) sum -= work_column(k)[r] * x[std::size_t(k)];
+      x[std::size_t(r)] = sum / diagonal[std::size_t(r)];
+      if (!std::isfinite(x[std::size_t(r)])) return false;
+    }
+    return true;
+  }
+
+ private:
+  double* column(int c) { return a_.data() + std::size_t(c) * most_rows; }
+  const double* column(int c) const { return a_.data() + std::size_t(c) * most_rows; }
+
+  // v[first..end) becomes the reflector (v . v = 2) that maps it to a multiple of e_first; returns
+  // that multiple.
+  static double reduce(double* v, int first, int end) {
+    const double length = std::sqrt(product(v, v, first, end));
+    if (!(length > 0.0)) return 0.0;
+    const double image = v[first] > 0.0 ? -length : length;
+    v[first] -= image;
+    const double scale = std::sqrt(2.0 / product(v, v, first, end));
+    for (int r = first; r < end; ++r) v[r] *= scale;
+    return image;
+  }
+  static void reflect(const double* v, int first, int end, double* x) {
+    const double factor = product(v, x, first, end);
+    for (int r = first; r < end; ++r) x[r] -= factor * v[r];
+  }
+  // Four running sums: their order is fixed, and they do not wait for each other.
+  static double product(const double* a, const double* b, int first, int end) {
+    double s0 = 0.0, s1 = 0.0, s2 = 0.0, s3 = 0.0;
+    int r = first;
+    for (; r + 4 <= end; r += 4) {
+      s0 += a[r] * b[r];
+      s1 += a[r + 1] * b[r + 1];
+      s2 += a[r + 2] * b[r + 2];
+      s3 += a[r + 3] * b[r + 3];
+    }
+    for (; r < end; ++r) s0 += a[r] * b[r];
+    return (s0 + s1) + (s2 + s3);
+  }
+
+  int rows_ = 0, columns_ = 0;
+  double largest_ = 0.0;
+  std::array<double, std::size_t(most_rows) * capacity> a_;
+  std::array<double, std::size_t(most_rows)> b_;
+  std::array<double, capacity> diagonal_;
+};
 
 }  // namespace bezel::small
