@@ -114,7 +114,7 @@ SmoothCurve<2> cut(const SmoothCurve<2>& curve, const CurvePart& part) {
   return SmoothCurve<2>(
       [curve, part, before, half](double u) {
         const double along = (1.0 + u) * half;
-        const double t = u >= 1.0          ? part.t1
+        const double t = u >= 1.0         ? part.t1
                          : along < before ? std::min(part.t0 + along, 1.0)
                                           : std::min(along - before - 1.0, part.t1);
         CurveJet<2> jet = curve(t);

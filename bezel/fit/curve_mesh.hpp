@@ -56,7 +56,8 @@ struct CurvedMesh {
 /// @throws   InputError for another degree, a tolerance outside (0, 0.1), no curve at all that an
 ///           edge lies on, curves that do not meet at a vertex both pass through (how far apart),
 ///           and where a method does not apply to an edge's part of a curve
-/// @cost     some 0.1 ms per boundary edge; relaxation: 0.1 s per 1000 elements and step at degree 3
+/// @cost     some 0.1 ms per boundary edge; relaxation: 0.1 s per 1000 elements and step at degree
+/// 3
 /// @limits   two curves closer to each other than the tolerance are not told apart
 CurvedMesh curve_mesh(const TriangleMesh& straight, std::span<const SmoothCurve<2>> curves,
                       const CurveMeshOptions& options = {});
