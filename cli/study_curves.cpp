@@ -14,6 +14,7 @@
 #include "bezel/fit/lobatto.hpp"
 #include "cli/curve_reference.hpp"
 #include "cli/study.hpp"
+#include "cli/study_curves_mesh.hpp"
 #include "cli/study_report.hpp"
 
 namespace bezel::cli {
@@ -383,6 +384,7 @@ int run_study_curves(const std::string& out_dir, bool quick, bool json) {
   }
   report.add(std::move(goals));
   work_table(report, curves, interpolator);
+  add_aerofoil_meshes(report, quick);
   report.write(out_dir, json);
   return 0;
 }

@@ -35,13 +35,19 @@ bool CurveFeet::closed(double tolerance) const {
   return norm(x_.front() - x_.back()) <= tolerance;
 }
 
-double CurveFeet::nearest(const Vec2& p, double lo, double hi) const {
+std::optional<double> CurveFeet::nearest(const Vec2& p, double lo, double hi) const {
   const auto slope = [&](double t) {
     const CurveJet<2> jet = curve_(t);
     return dot(jet.x - p, jet.d1);
   };
-  if (slope(lo) >= 0.0) return lo;
-  if (slope(hi) <= 0.0) return hi;
+  // At an end the distance is smallest only when the curve ends, or has a corner, there.
+  const auto end = [&](double t, bool smallest) -> std::optional<double> {
+    if (smallest || std::binary_search(special_.begin(), special_.end(), t)) return t;
+    return {};
+  };
+  const double first = slope(lo), last = slope(hi);
+  if (first >= 0.0) return end(lo, first == 0.0);
+  if (last <= 0.0) return end(hi, last == 0.0);
   double t = 0.5 * (lo + hi);
   for (int i = 0; i < 100 && hi - lo > 0x1p-53; ++i) {
     const CurveJet<2> jet = curve_(t);
@@ -69,8 +75,8 @@ std::vector<double> CurveFeet::feet(const Vec2& p, double tolerance) const {
   for (std::size_t i = 0; i + 1 < t_.size(); ++i) {
     // No point of the interval is further from its start than it is long.
     if (norm(p - x_[i]) > 1.01 * reach_[i] + tolerance) continue;
-    const double t = nearest(p, t_[i], t_[i + 1]);
-    if (norm(curve_(t).x - p) <= tolerance) add(t);
+    const std::optional<double> t = nearest(p, t_[i], t_[i + 1]);
+    if (t && norm(curve_(*t).x - p) <= tolerance) add(*t);
   }
   return out;
 }

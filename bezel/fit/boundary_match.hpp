@@ -22,7 +22,7 @@ class CurveFeet {
   const SmoothCurve<2>& curve() const { return curve_; }
 
  private:
-  double nearest(const Vec2& p, double lo, double hi) const;
+  std::optional<double> nearest(const Vec2& p, double lo, double hi) const;
 
   SmoothCurve<2> curve_;
   std::vector<double> t_, reach_;  // ends of intervals, and their lengths

@@ -15,6 +15,7 @@
 #include "bezel/fit/lobatto.hpp"
 #include "bezel/geometry/triangle.hpp"
 #include "bezel/mesh/bend.hpp"
+#include "bezel/mesh/edge_finder.hpp"
 
 namespace bezel {
 namespace {
@@ -275,31 +276,19 @@ class Curving {
 
   Tags tags() const {
     Tags tags = straight_.tags();
-    if (tags.edges.empty()) return tags;
-    const std::size_t size = at(bernstein::triangle_size(g_));
-    // The side that runs between the two nodes of a tagged edge.
-    std::vector<std::pair<std::pair<NodeId, NodeId>, ElementSide>> sides;
-    for (std::size_t e = 0; e < straight_.edge_count(); ++e) {
-      const auto nodes = straight_.edge_nodes(EdgeId(e));
-      sides.push_back({std::minmax(nodes[0], nodes[1]), straight_.adjacent(EdgeId(e))[0]});
-    }
-    std::sort(sides.begin(), sides.end(),
-              [](const auto& a, const auto& b) { return a.first < b.first; });
+    const EdgeFinder finder(straight_);
+    const std::size_t edge_base = vertex_.size(), edge_nodes = at(g_ - 1);
+    std::erase_if(tags.edges,
+                  [&](const TaggedEdge& edge) { return !finder.find(edge.nodes).edge.valid(); });
     for (TaggedEdge& edge : tags.edges) {
-      const std::pair<NodeId, NodeId> key = std::minmax(edge.nodes[0], edge.nodes[1]);
-      const auto found = std::lower_bound(sides.begin(), sides.end(), key,
-                                          [](const auto& a, const auto& b) { return a.first < b; });
-      if (found == sides.end() || found->first != key) continue;
-      const ElementSide& side = found->second;
-      std::vector<NodeId> nodes;
-      for (int m = 0; m <= g_; ++m)
-        nodes.push_back(elements_[side.element.index() * size +
-                                  at(bernstein::triangle_side_index(g_, side.side, m))]);
-      if (nodes.front() != edge.nodes[0]) std::reverse(nodes.begin(), nodes.end());
+      const auto [found, reversed] = finder.find(edge.nodes);
+      std::vector<NodeId> nodes = {edge.nodes[0]};
+      for (std::size_t m = 0; m < edge_nodes; ++m)
+        nodes.emplace_back(edge_base + found.index() * edge_nodes +
+                           (reversed ? edge_nodes - 1 - m : m));
+      nodes.push_back(edge.nodes[1]);
       edge.nodes = std::move(nodes);
     }
-    std::erase_if(tags.edges,
-                  [&](const TaggedEdge& edge) { return edge.nodes.size() != at(g_) + 1; });
     return tags;
   }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "bezel/base/error.hpp"
+#include "bezel/fit/curve_domain.hpp"
 #include "bezel/fit/curve_shapes.hpp"
 #include "bezel/fit/curve_sources.hpp"
 #include "bezel/geometry/triangle.hpp"
@@ -140,6 +141,72 @@ TEST(CurveMesh, KeepsCornersAndStraightSides) {
   EXPECT_EQ(curved.edges.size(), square.tags().edges.size());
   EXPECT_LE(curved.distance_max, 1e-15);
   EXPECT_NEAR(total_area(curved.mesh), 4.0, 1e-13);
+}
+
+TEST(CurveDomain, MeshesTheOutsideOfAnAerofoil) {
+  const std::vector<SmoothCurve<2>> curves = {ellipse_arc(Vec2{{0.5, 0}}, 1.5, 1.5, 0.0, 2 * pi),
+                                              naca4("0012", AerofoilPart::upper),
+                                              naca4("0012", AerofoilPart::lower)};
+  // Twice the integral of the thickness.
+  const double foil = 1.2 * (0.2969 / 1.5 - 0.1260 / 2 - 0.3516 / 3 + 0.2843 / 4 - 0.1036 / 5);
+  for (const double turn : {0.3, 1.0}) {
+    const TriangleMesh straight = mesh_curve_domain(curves, {0.25, turn, 1});
+    ASSERT_EQ(straight.tags().groups.size(), 4U);
+    CurveMeshOptions options;
+    options.degree = 4;
+    const CurvedMesh best = curve_mesh(straight, curves, options);
+    EXPECT_TRUE(best.invalid.empty());
+    EXPECT_EQ(best.straight_edges, 0U);
+    EXPECT_EQ(best.edges.size(), best.mesh.tags().edges.size());
+    EXPECT_NEAR(total_area(best.mesh), pi * 2.25 - foil, 10 * best.distance_max + 1e-13);
+    options.equal_parameter = true;
+    EXPECT_GT(curve_mesh(straight, curves, options).distance_l2, 1000 * best.distance_l2);
+  }
+}
+
+TEST(CurveDomain, TakesCurvesInAnyOrderAndDirection) {
+  const std::vector<Vec2> p = {Vec2{{0, 0}}, Vec2{{2, 0}}, Vec2{{2, 1}}, Vec2{{0, 1}}};
+  const auto line = [&](std::size_t a, std::size_t b) {
+    return bezier_curve<2>(std::vector<Vec2>{p[a], p[b]});
+  };
+  const std::vector<SmoothCurve<2>> curves = {line(2, 1), line(0, 1), line(0, 3), line(2, 3),
+                                              ellipse_arc(Vec2{{1, 0.5}}, 0.2, 0.2, 0, 2 * pi)};
+  const std::vector<std::string> names = {"right", "bottom", "left", "top", "hole"};
+  const TriangleMesh mesh = mesh_curve_domain(curves, {0.2, 0.5, 1}, names);
+  EXPECT_NEAR(total_area(mesh), 2 - 0.04 * pi, 0.01);
+  EXPECT_EQ(mesh.tags().groups[5].name, "hole");
+  // Tagged edges have the domain on their left: the bottom runs to the right, the left downwards.
+  for (const TaggedEdge& edge : mesh.tags().edges) {
+    const Vec2 d = mesh.control(edge.nodes[1]) - mesh.control(edge.nodes[0]);
+    if (edge.entity == 2) {
+      EXPECT_GT(d.x(), 0.0);
+    } else if (edge.entity == 3) {
+      EXPECT_LT(d.y(), 0.0);
+    }
+  }
+}
+
+TEST(CurveDomain, RefusesBadInput) {
+  const auto line = [](double x0, double y0, double x1, double y1) {
+    return bezier_curve<2>(std::vector<Vec2>{Vec2{{x0, y0}}, Vec2{{x1, y1}}});
+  };
+  const std::vector<SmoothCurve<2>> open = {line(0, 0, 1, 0), line(1, 0, 0, 1),
+                                            line(0, 1, 0, 0.125)};
+  EXPECT_EQ(refused([&] { return mesh_curve_domain(open); }),
+            "the end of curve 2 meets no other end; the nearest is 0.125000 away, expected closed "
+            "chains of curves");
+  EXPECT_NE(refused([&] { return mesh_curve_domain({}); }), "accepted");
+  const std::vector<SmoothCurve<2>> good = {line(0, 0, 1, 0), line(1, 0, 0, 1), line(0, 1, 0, 0)};
+  EXPECT_EQ(refused([&] { return mesh_curve_domain(good, {0.25, 0.5, 1}); }), "accepted");
+  EXPECT_NE(refused([&] { return mesh_curve_domain(good, {-1.0, 0.5, 1}); }), "accepted");
+  EXPECT_NE(refused([&] { return mesh_curve_domain(good, {0.25, 3.0, 1}); }), "accepted");
+  EXPECT_NE(refused([&] { return mesh_curve_domain(good, {1e-4, 0.5, 1}); }), "accepted");
+  const std::vector<std::string> names = {"a"};
+  EXPECT_NE(refused([&] { return mesh_curve_domain(good, {}, names); }), "accepted");
+  // Circles that cross.
+  const std::vector<SmoothCurve<2>> crossing = {ellipse_arc(Vec2{}, 1, 1, 0, 2 * pi),
+                                                ellipse_arc(Vec2{{1, 0}}, 1, 1, 0, 2 * pi)};
+  EXPECT_NE(refused([&] { return mesh_curve_domain(crossing); }), "accepted");
 }
 
 TEST(CurveMesh, RefusesBadInput) {
