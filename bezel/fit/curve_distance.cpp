@@ -35,23 +35,22 @@ class Start {
 }  // namespace
 
 template <int dim>
-Score measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const Score* guess) {
+Score<dim> measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const Score<dim>* guess) {
   const CurveRung& rung = problem.tables.rung(nodes.n);
   Start<dim> start(rung, nodes);
-  Score score;
+  Score<dim> score;
   double sum = 0.0, furthest = -1.0;
-  std::array<double, std::size_t(4) * max_curve_degree> speeds;
   int slowest = 0;
   for (int a = 0; a < rung.m; ++a) {
     const double x = rung.xi[std::size_t(a)];
     const Vec<dim> p = combine(rung.value_row(a), nodes);
     const double speed = norm(combine(rung.slope_row(a), nodes));
-    const Foot<dim> f = foot(problem.curve, p, guess ? guess->foot[std::size_t(a)] : start(a));
-    score.foot[std::size_t(a)] = f.s;
+    const Foot<dim> f = foot(problem.curve, p, guess ? guess->foot[std::size_t(a)].s : start(a));
+    score.foot[std::size_t(a)] = f;
     const double distance_squared = dot(f.e, f.e);
     sum += rung.weight[std::size_t(a)] * speed * distance_squared;
-    speeds[std::size_t(a)] = speed;
-    if (speed < speeds[std::size_t(slowest)]) slowest = a;
+    score.speed[std::size_t(a)] = speed;
+    if (speed < score.speed[std::size_t(slowest)]) slowest = a;
     if (distance_squared > furthest) {
       furthest = distance_squared;
       score.far_xi = x;
@@ -60,13 +59,13 @@ Score measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const Score*
   // The least speed lies between points: the vertex of the parabola in the angle through three.
   double vertex = slowest + 0.5;
   if (slowest > 0 && slowest + 1 < rung.m) {
-    const double* v = speeds.data() + slowest;
+    const double* v = score.speed.data() + slowest;
     const double bend = v[-1] - 2.0 * v[0] + v[1];
     if (bend > 0.0) vertex += 0.5 * (v[-1] - v[1]) / bend;
   }
   score.slow_xi = -std::cos(vertex * std::numbers::pi / rung.m);
   score.d2 = std::isfinite(sum) ? std::sqrt(sum) : HUGE_VAL;
-  score.min_speed = speeds[std::size_t(slowest)] / (0.5 * problem.length);
+  score.min_speed = score.speed[std::size_t(slowest)] / (0.5 * problem.length);
   score.valid = nodes.ordered() && score.min_speed >= 1e-3 && std::isfinite(sum);
   return score;
 }
@@ -84,7 +83,7 @@ double rough_distance(const Problem<dim>& problem, const Nodes<dim>& nodes) {
 }
 
 template <int dim>
-int minimise_distance(const Problem<dim>& problem, Nodes<dim>& nodes, Score& score,
+int minimise_distance(const Problem<dim>& problem, Nodes<dim>& nodes, Score<dim>& score,
                       int iterations) {
   const CurveRung& rung = problem.tables.rung(nodes.n);
   const int size = nodes.n - 1;
@@ -93,12 +92,9 @@ int minimise_distance(const Problem<dim>& problem, Nodes<dim>& nodes, Score& sco
   // is the vector normal to the curve.
   const auto build = [&](small::LeastSquares& squares, const Vector& unit) {
     for (int a = 0; a < rung.m; ++a) {
-      const Vec<dim> p = combine(rung.value_row(a), nodes);
-      const Vec<dim> slope = combine(rung.slope_row(a), nodes);
-      const CurveJet<dim> at = problem.curve(score.foot[std::size_t(a)]);
-      const Vec<dim> e = p - at.x;
-      const Vec<dim> tau = (1.0 / norm(at.d1)) * at.d1;
-      const double weight = std::sqrt(rung.weight[std::size_t(a)] * norm(slope));
+      const Vec<dim>& e = score.foot[std::size_t(a)].e;
+      const Vec<dim>& tau = score.foot[std::size_t(a)].tangent;
+      const double weight = std::sqrt(rung.weight[std::size_t(a)] * score.speed[std::size_t(a)]);
       const double* l = rung.value_row(a) + 1;
       Vector row;
       if constexpr (dim == 2) {
@@ -119,7 +115,7 @@ int minimise_distance(const Problem<dim>& problem, Nodes<dim>& nodes, Score& sco
     }
   };
   const auto accept = [&](const Nodes<dim>& next) {
-    const Score trial = measure(problem, next, &score);
+    const Score<dim> trial = measure(problem, next, &score);
     if (!trial.valid || (score.valid && !(trial.d2 < score.d2))) return 0.0;
     const double gain = score.valid ? (score.d2 - trial.d2) / score.d2 : 1.0;
     score = trial;
@@ -128,11 +124,11 @@ int minimise_distance(const Problem<dim>& problem, Nodes<dim>& nodes, Score& sco
   return levenberg_marquardt(problem, nodes, iterations, 1e-3, build, accept);
 }
 
-template Score measure(const Problem<2>&, const Nodes<2>&, const Score*);
-template Score measure(const Problem<3>&, const Nodes<3>&, const Score*);
+template Score<2> measure(const Problem<2>&, const Nodes<2>&, const Score<2>*);
+template Score<3> measure(const Problem<3>&, const Nodes<3>&, const Score<3>*);
 template double rough_distance(const Problem<2>&, const Nodes<2>&);
 template double rough_distance(const Problem<3>&, const Nodes<3>&);
-template int minimise_distance(const Problem<2>&, Nodes<2>&, Score&, int);
-template int minimise_distance(const Problem<3>&, Nodes<3>&, Score&, int);
+template int minimise_distance(const Problem<2>&, Nodes<2>&, Score<2>&, int);
+template int minimise_distance(const Problem<3>&, Nodes<3>&, Score<3>&, int);
 
 }  // namespace bezel::curve_search

@@ -128,8 +128,8 @@ class Level {
   Found<dim> plain;  // the best of those offered before plain_over
   bool plain_over = false;
 
-  Score offer(const Nodes<dim>& nodes, bool is_root) {
-    const Score score = measure(problem_, nodes);
+  Score<dim> offer(const Nodes<dim>& nodes, bool is_root) {
+    const Score<dim> score = measure(problem_, nodes);
     keep(nodes, score, is_root);
     return score;
   }
@@ -141,7 +141,7 @@ class Level {
   }
   // Least distance from a start, then Newton from there.
   void descend(Nodes<dim> nodes) {
-    Score score = measure(problem_, nodes);
+    Score<dim> score = measure(problem_, nodes);
     effort_.distance += minimise_distance(problem_, nodes, score, 15);
     keep(nodes, score, false);
     if (score.valid) newton(nodes, false);
@@ -149,16 +149,19 @@ class Level {
   // Least distance and Newton in turn. Newton leaves valleys in which the distance falls slowly,
   // also where it does not converge; a few steps of least distance then follow from there.
   void explore(Nodes<dim> nodes, int rounds) {
-    Score score = measure(problem_, nodes);
+    Score<dim> score = measure(problem_, nodes);
     for (int round = 0; round < rounds; ++round) {
-      effort_.distance += minimise_distance(problem_, nodes, score, round == 0 ? 8 : 15);
+      effort_.distance += minimise_distance(problem_, nodes, score,
+                                            round == 0   ? 8
+                                            : round == 1 ? 15
+                                                         : 40);
       keep(nodes, score, false);
       if (!score.valid) return;
       Nodes<dim> aside = nodes;
-      const NewtonResult r = solve_tangents(problem_, aside, false);
+      const NewtonResult r = solve_tangents(problem_, aside, round >= 2);
       effort_.newton += r.iterations;
       if (!aside.ordered()) continue;
-      Score found = offer(aside, r.converged);
+      Score<dim> found = offer(aside, r.converged);
       if (!found.valid) continue;
       effort_.distance += minimise_distance(problem_, aside, found, 8);
       keep(aside, found, false);
@@ -168,7 +171,7 @@ class Level {
   void polish(const Found<dim>& from, int iterations) {
     if (!from.score.valid || at_floor()) return;
     Nodes<dim> nodes = from.nodes;
-    Score score = from.score;
+    Score<dim> score = from.score;
     effort_.distance += minimise_distance(problem_, nodes, score, iterations);
     keep(nodes, score, false);
   }
@@ -183,14 +186,14 @@ class Level {
   }
 
  private:
-  void keep(const Nodes<dim>& nodes, const Score& score, bool is_root) {
+  void keep(const Nodes<dim>& nodes, const Score<dim>& score, bool is_root) {
     const Found<dim> found{nodes, score,
                            is_root ? CurveKind::equal_tangent : CurveKind::orthogonal_distance};
     if (better(score, best)) best = found;
     if (!plain_over && better(score, plain)) plain = found;
     if (is_root && better(score, root)) root = found;
   }
-  bool better(const Score& score, const Found<dim>& than) const {
+  bool better(const Score<dim>& score, const Found<dim>& than) const {
     if (than.nodes.n != degree_) return true;  // nothing yet
     if (score.valid != than.score.valid) return score.valid;
     return score.d2 < than.score.d2;
@@ -278,6 +281,7 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
   last.score = measure(problem, last.nodes);
   best = root = last;
   Found<dim> plain = last, before;
+  int idle = 0;  // nearly exact degrees in a row that brought no gain
   for (int n = 2; n <= degree; ++n) {
     const bool final = n == degree;
     if (last.score.valid && last.score.d2 < floor_of_length * problem.length) {
@@ -312,10 +316,10 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
     const bool nearly =
         level.best.score.valid && level.best.score.d2 < nearly_exact * problem.length;
     if ((final || nearly) && !jumped) {
-      for (const double density : {0.8, 0.6, 0.4}) {
+      for (const double density : {0.8, 0.9, 0.7, 0.6}) {
         if (level.done(last, factor) || !level.best.score.valid) break;
         const Found<dim> from = level.best;
-        level.explore(crowded(problem, from.nodes, from.score.slow_xi, density), 2);
+        level.explore(crowded(problem, from.nodes, from.score.slow_xi, density), nearly ? 4 : 2);
         level.explore(crowded(problem, from.nodes, from.score.far_xi, density), 2);
       }
     }
@@ -328,7 +332,9 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
     if (final) {
       best = level.best;
       root = level.root;
-    } else if (!gained && last.score.d2 < nearly_exact * problem.length) {
+    } else if (gained || last.score.d2 >= nearly_exact * problem.length) {
+      idle = 0;
+    } else if (++idle == 2) {
       plain = last;
       n = degree - 1;
     }

@@ -9,7 +9,7 @@ namespace bezel::curve_search {
 template <int dim>
 struct Found {
   Nodes<dim> nodes;
-  Score score;
+  Score<dim> score;
   CurveKind kind = CurveKind::orthogonal_distance;
 };
 struct Effort {

@@ -20,10 +20,19 @@ struct Nodes {
   int n = 0;
   std::array<double, max_nodes> t;
   std::array<CurveJet<dim>, max_nodes> g;
+  /// x and d1 of g once more, coordinate by coordinate, for sums over the nodes.
+  std::array<std::array<double, max_nodes>, dim> x, d1;
 
   void place(const SmoothCurve<dim>& curve, int i, double parameter) {
+    set(i, parameter, curve(parameter));
+  }
+  void set(int i, double parameter, const CurveJet<dim>& jet) {
     t[std::size_t(i)] = parameter;
-    g[std::size_t(i)] = curve(parameter);
+    g[std::size_t(i)] = jet;
+    for (std::size_t c = 0; c < dim; ++c) {
+      x[c][std::size_t(i)] = jet.x.c[c];
+      d1[c][std::size_t(i)] = jet.d1.c[c];
+    }
   }
   bool ordered() const {
     for (int i = 0; i < n; ++i)
@@ -49,10 +58,8 @@ struct Problem {
     return nodes;
   }
   void set_ends(Nodes<dim>& nodes) const {
-    nodes.t[0] = -1.0;
-    nodes.t[std::size_t(nodes.n)] = 1.0;
-    nodes.g[0] = first;
-    nodes.g[std::size_t(nodes.n)] = last;
+    nodes.set(0, -1.0, first);
+    nodes.set(nodes.n, 1.0, last);
   }
 };
 
@@ -60,7 +67,8 @@ struct Problem {
 template <int dim>
 Vec<dim> combine(const double* row, const Nodes<dim>& nodes) {
   Vec<dim> sum;
-  for (int k = 0; k <= nodes.n; ++k) sum += row[k] * nodes.g[std::size_t(k)].x;
+  for (std::size_t c = 0; c < dim; ++c)
+    sum.c[c] = small::product(row, nodes.x[c].data(), nodes.n + 1);
   return sum;
 }
 
@@ -86,13 +94,15 @@ double foot_step(const CurveJet<dim>& jet, const Vec<dim>& e, double s) {
 /// steps of Newton from s.
 template <int dim>
 Foot<dim> foot(const SmoothCurve<dim>& curve, const Vec<dim>& q, double s) {
+  // What a cubic Taylor term of a step leaves is below rounding.
+  constexpr double settled = 1e-6;
   s = std::clamp(s, -1.0, 1.0);
   for (int i = 0;; ++i) {
     const CurveJet<dim> jet = curve(s);
     Vec<dim> e = q - jet.x;
     const double step = foot_step(jet, e, s);
     Vec<dim> d1 = jet.d1;
-    if (std::fabs(step) <= 1e-8) {
+    if (std::fabs(step) <= settled) {
       // What is left of the step is followed on the Taylor polynomial: no further evaluation.
       e -= step * (jet.d1 + (0.5 * step) * jet.d2);
       d1 += step * jet.d2;
@@ -100,7 +110,11 @@ Foot<dim> foot(const SmoothCurve<dim>& curve, const Vec<dim>& q, double s) {
       s += step;
       continue;
     }
-    return {s + (std::fabs(step) <= 1e-8 ? step : 0.0), e, (1.0 / norm(d1)) * d1};
+    const double at = s + (std::fabs(step) <= settled ? step : 0.0);
+    const Vec<dim> tau = (1.0 / norm(d1)) * d1;
+    // Inside, what is left along the curve is the step's error and no distance.
+    if (at > -1.0 && at < 1.0) e -= dot(e, tau) * tau;
+    return {at, e, tau};
   }
 }
 
@@ -191,16 +205,20 @@ NewtonResult solve_tangents(const Problem<dim>& problem, Nodes<dim>& nodes, bool
                             double converged = 1e-12);
 
 /// Mean square distance of an interpolant to the curve, measured while searching.
+template <int dim>
 struct Score {
   double d2 = HUGE_VAL;                ///< sqrt(int d^2 |p'|)
   double min_speed = 0.0;              ///< smallest |p'| / (L / 2)
   bool valid = false;                  ///< nodes ordered, min_speed >= 1e-3
-  double slow_xi = 0.0, far_xi = 0.0;  ///< where |p\'| is smallest, and d largest
-  std::array<double, std::size_t(4) * max_curve_degree> foot;  ///< parameters of the feet
+  double slow_xi = 0.0, far_xi = 0.0;  ///< where |p'| is smallest, and d largest
+  static constexpr std::size_t most = std::size_t(4) * max_curve_degree;
+  std::array<Foot<dim>, most> foot;
+  std::array<double, most> speed;  ///< |p'|
 };
 /// @param guess  feet to start from; null: between the nodes
 template <int dim>
-Score measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const Score* guess = nullptr);
+Score<dim> measure(const Problem<dim>& problem, const Nodes<dim>& nodes,
+                   const Score<dim>* guess = nullptr);
 
 /// About the same d2 from one point in four: a check.
 template <int dim>
@@ -210,6 +228,7 @@ double rough_distance(const Problem<dim>& problem, const Nodes<dim>& nodes);
 ///
 /// @return  iterations done
 template <int dim>
-int minimise_distance(const Problem<dim>& problem, Nodes<dim>& nodes, Score& score, int iterations);
+int minimise_distance(const Problem<dim>& problem, Nodes<dim>& nodes, Score<dim>& score,
+                      int iterations);
 
 }  // namespace bezel::curve_search

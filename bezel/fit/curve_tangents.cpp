@@ -52,7 +52,9 @@ void linearise(const Problem<2>& problem, const CurveRung& rung, const Nodes<2>&
     const Vec2 tau = scale * r.tau;
     const double* d = rung.d_row(i);
     double* row = jacobian[i - 1];
-    for (int k = 1; k < nodes.n; ++k) row[k - 1] = d[k] * cross(nodes.g[std::size_t(k)].d1, tau);
+    for (int k = 1; k < nodes.n; ++k)
+      row[k - 1] =
+          d[k] * (nodes.d1[0][std::size_t(k)] * tau[1] - nodes.d1[1][std::size_t(k)] * tau[0]);
     row[i - 1] = scale * cross(r.slope, r.dtau);
   }
 }

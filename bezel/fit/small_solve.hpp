@@ -18,6 +18,20 @@ struct Matrix {
   const double* operator[](int i) const { return a.data() + std::size_t(i) * capacity; }
 };
 
+/// a . b by four running sums: their order is fixed, and they do not wait for each other.
+inline double product(const double* a, const double* b, int n) {
+  double s0 = 0.0, s1 = 0.0, s2 = 0.0, s3 = 0.0;
+  int i = 0;
+  for (; i + 4 <= n; i += 4) {
+    s0 += a[i] * b[i];
+    s1 += a[i + 1] * b[i + 1];
+    s2 += a[i + 2] * b[i + 2];
+    s3 += a[i + 3] * b[i + 3];
+  }
+  for (; i < n; ++i) s0 += a[i] * b[i];
+  return (s0 + s1) + (s2 + s3);
+}
+
 /// Solves A x = b by Gaussian elimination with partial pivoting; A is overwritten, b becomes x.
 /// False when a pivot is zero or not finite.
 inline bool solve(int n, Matrix& a, Vector& b) {
@@ -32,9 +46,10 @@ inline bool solve(int n, Matrix& a, Vector& b) {
       std::swap(b[std::size_t(c)], b[std::size_t(pivot)]);
     }
     const double* top = a[c];
+    const double inverse = 1.0 / head;
     for (int r = c + 1; r < n; ++r) {
       double* row = a[r];
-      const double factor = row[c] / head;
+      const double factor = row[c] * inverse;
       for (int k = c + 1; k < n; ++k) row[k] -= factor * top[k];
       b[std::size_t(r)] -= factor * b[std::size_t(c)];
     }
@@ -143,32 +158,18 @@ class LeastSquares {
   // v[first..end) becomes the reflector (v . v = 2) that maps it to a multiple of e_first; returns
   // that multiple.
   static double reduce(double* v, int first, int end) {
-    const double length = std::sqrt(product(v, v, first, end));
+    const double length = std::sqrt(product(v + first, v + first, end - first));
     if (!(length > 0.0)) return 0.0;
     const double image = v[first] > 0.0 ? -length : length;
     v[first] -= image;
-    const double scale = std::sqrt(2.0 / product(v, v, first, end));
+    const double scale = std::sqrt(2.0 / product(v + first, v + first, end - first));
     for (int r = first; r < end; ++r) v[r] *= scale;
     return image;
   }
   static void reflect(const double* v, int first, int end, double* x) {
-    const double factor = product(v, x, first, end);
+    const double factor = product(v + first, x + first, end - first);
     for (int r = first; r < end; ++r) x[r] -= factor * v[r];
   }
-  // Four running sums: their order is fixed, and they do not wait for each other.
-  static double product(const double* a, const double* b, int first, int end) {
-    double s0 = 0.0, s1 = 0.0, s2 = 0.0, s3 = 0.0;
-    int r = first;
-    for (; r + 4 <= end; r += 4) {
-      s0 += a[r] * b[r];
-      s1 += a[r + 1] * b[r + 1];
-      s2 += a[r + 2] * b[r + 2];
-      s3 += a[r + 3] * b[r + 3];
-    }
-    for (; r < end; ++r) s0 += a[r] * b[r];
-    return (s0 + s1) + (s2 + s3);
-  }
-
   int rows_ = 0, columns_ = 0;
   double largest_ = 0.0;
   std::array<double, std::size_t(most_rows) * capacity> a_;
