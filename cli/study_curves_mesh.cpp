@@ -62,12 +62,10 @@ void add_aerofoil_meshes(StudyReport& report, bool quick) {
                                              {"relaxation", "relaxation"},
                                              {"invalid", "invalid"}});
   std::vector<Series> series;
-  for (const Nodes& n : nodes)
-    for (int g = 2; g <= 4; ++g)
-      series.push_back({fmt::format("{}, degree {}", n.name, g), {}, {}, n.equal_parameter});
   for (int level = 0; level < (quick ? 2 : 3); ++level) {
     const double scale = std::ldexp(1.0, -level);
     const TriangleMesh straight = mesh_curve_domain(curves, {0.4 * scale, 0.8 * scale, 1});
+    Series equal{{}, {}, {}, true}, best;
     for (int g = 1; g <= 4; ++g) {
       std::array<double, nodes.size()> distance{};
       double largest = 0.0, area_error = 0.0;
@@ -85,10 +83,12 @@ void add_aerofoil_meshes(StudyReport& report, bool quick) {
         edges = found.edges.size();
         largest = found.distance_max;
         area_error = std::fabs(area_of(found.mesh) - exact_area());
-        if (g < 2) continue;
-        Series& line = series[3 * k + static_cast<std::size_t>(g - 2)];
-        line.x.push_back(static_cast<double>(edges));
-        line.y.push_back(std::max(distance[k], 1e-17));
+      }
+      equal.name = fmt::format("equal parameter, {} edges", edges);
+      best.name = fmt::format("best, {} edges", edges);
+      for (Series* line : {&equal, &best}) {
+        line->x.push_back(g);
+        line->y.push_back(std::max(distance[line == &equal ? 0 : 2], 1e-17));
       }
       table.rows.push_back(
           {{count_cell(edges), count_cell(straight.element_count()),
@@ -97,13 +97,15 @@ void add_aerofoil_meshes(StudyReport& report, bool quick) {
             number_cell(distance[0] / distance[2]), number_cell(largest), number_cell(area_error),
             count_cell(static_cast<std::size_t>(relaxation)), count_cell(invalid)}});
     }
+    series.push_back(std::move(equal));
+    series.push_back(std::move(best));
   }
   report.add(std::move(table));
   PlotOptions options;
   options.title = "Meshes around NACA 0012: distance of curved edges to the boundary";
-  options.x_label = "boundary edges";
+  options.x_label = "degree";
   options.y_label = "L2 norm of the distance";
-  options.log_x = options.log_y = true;
+  options.log_y = true;
   report.add_plot("aerofoil.svg", std::move(series), options);
 }
 
