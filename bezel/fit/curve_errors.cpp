@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <numbers>
 #include <vector>
 
 #include "bezel/base/error.hpp"
@@ -113,11 +114,12 @@ template <int dim>
 double CurveInterpolator::largest_distance(const SmoothCurve<dim>& curve,
                                            std::span<const Vec<dim>> nodal) const {
   const CurveRung& rung = tables_->rung(checked_degree(nodal, max_degree()));
+  // Distances of good interpolants have about 2 n humps: their tops are met within 2 percent.
+  const int points = 8 * rung.n + 24;
   double largest = 0.0, s = -1.0;
-  for (int a = 0; a < rung.m; ++a) {
-    Vec<dim> p;
-    for (int k = 0; k <= rung.n; ++k) p += rung.value_row(a)[k] * nodal[std::size_t(k)];
-    largest = std::max(largest, distance(curve, p, s));
+  for (int a = 0; a < points; ++a) {
+    const double xi = -std::cos((a + 0.5) * std::numbers::pi / points);
+    largest = std::max(largest, distance(curve, rung.basis.evaluate(nodal, xi), s));
   }
   return largest;
 }

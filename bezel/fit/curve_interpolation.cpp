@@ -19,6 +19,7 @@ void check_degree(int degree, int largest) {
 template <int dim>
 CurveNodes searched(const Problem<dim>& problem, int degree, CurveMethod method,
                     Nodes<dim>& nodes) {
+  constexpr double rounding = 1e-14, far_behind = 50.0;
   constexpr int l2_iterations = 60, distance_iterations = 100;
   CurveNodes out;
   Effort effort;
@@ -30,10 +31,14 @@ CurveNodes searched(const Problem<dim>& problem, int degree, CurveMethod method,
   }
   switch (method) {
     case CurveMethod::equal_tangent:
-      if (root.nodes.n == degree)
-        best = root;
-      else
-        out.status = CurveStatus::not_converged;
+      // Nodes exact to rounding solve the equations to rounding. Roots far behind the best nodes
+      // are no answer: at an inflection all roots of an even degree may be bad.
+      if (!(best.score.valid && best.score.d2 < rounding * problem.length)) {
+        if (root.score.valid && root.score.d2 <= far_behind * best.score.d2)
+          best = root;
+        else
+          out.status = CurveStatus::not_converged;
+      }
       break;
     case CurveMethod::orthogonal_distance:
       effort.distance += minimise_distance(problem, best.nodes, best.score, distance_iterations);

@@ -31,7 +31,8 @@ enum class CurveStatus {
   not_a_graph,      ///< standard, l2: x is not strictly monotone along the curve
   not_a_chord_map,  ///< chord: the projection onto the chord is not strictly monotone
   closed,           ///< chord: the end points coincide (standard, l2 then say not_a_graph)
-  not_converged,    ///< an iteration gave up; the nodes are the best seen
+  not_converged,    ///< equal tangent: no root found within 50 times the least distance seen; the
+                    ///< nodes are those of that least distance
 };
 std::string_view name(CurveStatus status);
 
@@ -107,8 +108,8 @@ class CurveInterpolator {
   template <int dim>
   CurveErrors errors(const SmoothCurve<dim>& curve, std::span<const Vec<dim>> nodal) const;
 
-  /// Only the largest distance of 4 N points of the polynomial to the curve: what `errors` finds at
-  /// its own points, at a fraction of the cost.
+  /// Only the largest distance, of 8 d + 24 points: within 2 percent of what `errors` finds for
+  /// good interpolants, at a fraction of the cost.
   template <int dim>
   double largest_distance(const SmoothCurve<dim>& curve, std::span<const Vec<dim>> nodal) const;
 

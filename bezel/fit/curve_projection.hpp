@@ -47,16 +47,16 @@ class Projection {
     for (int i = 0; i < 100; ++i) {
       const CurveJet<dim> jet = curve_(t);
       const double f = coordinate(jet.x) - c;
-      if (f == 0.0) return t;
+      const double newton = f / dot(direction_, jet.d1);
+      if (std::fabs(newton) <= 4e-16) return std::clamp(t - newton, below->t, above->t);
       (f > 0.0 ? hi : lo) = t;
-      double next = t - f / dot(direction_, jet.d1);
+      double next = t - newton;
       // Every third step halves the bracket if the steps before did not.
       const bool slow = i % 3 == 2 && hi - lo > 0.5 * width;
       if (i % 3 == 2) width = hi - lo;
       if (slow || !(next > lo && next < hi)) next = lo + 0.5 * (hi - lo);
-      const double step = std::fabs(next - t);
+      if (!(next > lo && next < hi)) break;
       t = next;
-      if (step <= 4e-16 || !(t > lo && t < hi)) break;
     }
     return t;
   }

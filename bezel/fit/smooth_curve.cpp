@@ -151,13 +151,11 @@ double SmoothCurve<dim>::at_length(double s) const {
   // Newton in a bracket: the length grows with t.
   for (int i = 0; i < 60; ++i) {
     const double f = s_lo + gauss_length<dim>(state_->function, start, t) - s;
+    const double step = f / norm(state_->function(t).d1);
+    // Quadratic: after a step of 1e-9 of the panel the error is near 1e-18.
+    if (std::fabs(step) <= 1e-9 * (panel->t - start)) return std::clamp(t - step, start, panel->t);
     (f > 0.0 ? hi : lo) = t;
-    double next = t - f / norm(state_->function(t).d1);
-    if (!(next > lo && next < hi)) next = lo + (hi - lo) / 2.0;
-    const double step = std::fabs(next - t);
-    t = next;
-    // Quadratic: a step of 1e-9 leaves an error near 1e-18.
-    if (step <= 1e-9 * (panel->t - start)) break;
+    t = t - step > lo && t - step < hi ? t - step : lo + (hi - lo) / 2.0;
   }
   return t;
 }
