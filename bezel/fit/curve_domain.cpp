@@ -12,7 +12,7 @@
 namespace bezel {
 namespace {
 
-constexpr double most_edges = 1e5;
+constexpr double most_edges = 1e5, most_tests = 1e8;  // of a point against a boundary edge
 constexpr int samples_per_part = 256, most_breaks = 16;
 constexpr double growth = 0.3;  // of the edge length along the curve
 
@@ -166,21 +166,17 @@ std::vector<Loop> make_loops(std::span<const SmoothCurve<2>> curves, double size
   std::vector<Loop> loops;
   for (const auto& parts : chain(curves)) {
     // At least three vertices per loop.
-    double used = size;
-    for (int attempt = 0; attempt < 3; ++attempt) {
-      Loop loop;
+    Loop loop;
+    for (double used = size; loop.size() < 3; used *= 0.5) {
+      loop.clear();
       for (const auto& [k, backwards] : parts) {
         std::vector<double> t = spread(curves[k], used, turn);
         if (backwards) std::reverse(t.begin(), t.end());
         for (std::size_t i = 0; i + 1 < t.size(); ++i)
           loop.push_back({curves[k](t[i]).x, static_cast<int>(k)});
       }
-      if (loop.size() >= 3) {
-        loops.push_back(std::move(loop));
-        break;
-      }
-      used *= 0.4;
     }
+    loops.push_back(std::move(loop));
   }
   orient(loops);
   return loops;
@@ -227,9 +223,12 @@ TriangleMesh mesh_curve_domain(std::span<const SmoothCurve<2>> curves,
       }
       domain.area += signed_area(loop);
     }
-    if (!(domain.area / (size * size) < 0.4 * most_edges))
-      throw InputError("size " + std::to_string(options.size) +
-                       " would give more than 100000 triangles, expected a larger one");
+    const double triangles = domain.area / (std::sqrt(3.0) / 4.0 * size * size);
+    if (!(triangles < most_edges && triangles * static_cast<double>(t.points.size()) < most_tests))
+      throw InputError("size " + std::to_string(options.size) + " would give " +
+                       std::to_string(triangles) + " triangles and " +
+                       std::to_string(t.points.size()) +
+                       " boundary edges, expected less than 100000, and a product below 1e8");
     domain.size = size;
     domain.margin = 0.5 * longest;
     const auto contains = [&](const Vec2& p) {

@@ -29,7 +29,7 @@ struct CurveDomainOptions {
 /// @param names  none, or one per curve
 /// @throws   InputError for a bad option, ends that do not meet (how far apart), chains that touch
 ///           or cross each other or themselves as polygons, and a size that would give more than
-///           1e5 triangles or boundary edges
+///           1e5 triangles or boundary edges, or 1e8 pairs of them
 /// @cost     1e4 triangles with 500 boundary edges: 0.2 s
 /// @limits   one size inside: elements next to short boundary edges are long
 TriangleMesh mesh_curve_domain(std::span<const SmoothCurve<2>> curves,

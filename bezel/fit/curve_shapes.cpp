@@ -29,9 +29,9 @@ void check_positive(double value, const char* what) {
 void check_turn(double from, double to) {
   bernstein::checks::finite(from, "the first angle");
   bernstein::checks::finite(to, "the last angle");
-  if (!(std::fabs(to - from) <= 2.0 * pi * (1.0 + 1e-12)))
+  if (!(std::fabs(to - from) <= 2.0 * pi * (1.0 + 1e-12) && std::fabs(from) <= 1e6))
     throw InputError("found angles from " + std::to_string(from) + " to " + std::to_string(to) +
-                     ", expected at most one turn");
+                     ", expected at most one turn, within a million of 0");
 }
 
 /// cos and sin of an angle; exact at multiples of pi/2 as doubles give them, so that full turns

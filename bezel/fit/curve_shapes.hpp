@@ -15,7 +15,7 @@ namespace bezel {
 /// rotation by `angle`; a = b: an arc of a circle.
 ///
 /// @param a, b      > 0
-/// @param from, to  different, at most one turn apart
+/// @param from, to  different, at most one turn apart, within 1e6 of 0
 SmoothCurve<2> ellipse_arc(const Vec2& centre, double a, double b, double from, double to,
                            double angle = 0.0);
 
@@ -24,7 +24,7 @@ SmoothCurve<2> ellipse_arc(const Vec2& centre, double a, double b, double from, 
 /// axes unless n is even (derivatives above the n-th jump there).
 ///
 /// @param n         exponent, 2..100: below 2 the curvature is infinite on the axes
-/// @param from, to  different, at most one turn apart
+/// @param from, to  different, at most one turn apart, within 1e6 of 0
 SmoothCurve<2> superellipse_arc(double a, double b, double n, double from, double to);
 
 /// The curve that starts at a point in the direction `heading` (radians), with a curvature that

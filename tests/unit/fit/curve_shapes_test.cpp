@@ -120,8 +120,10 @@ TEST(Shapes, RefuseBadInput) {
             "both not");
   EXPECT_EQ(refused([] { return ellipse_arc(Vec2{}, 1, 0, 0, 1); }),
             "the second half axis is 0.000000, expected a positive one");
-  EXPECT_EQ(refused([] { return ellipse_arc(Vec2{}, 1, 1, 0, 7); }),
-            "found angles from 0.000000 to 7.000000, expected at most one turn");
+  EXPECT_EQ(
+      refused([] { return ellipse_arc(Vec2{}, 1, 1, 0, 7); }),
+      "found angles from 0.000000 to 7.000000, expected at most one turn, within a million of 0");
+  EXPECT_NE(refused([] { return superellipse_arc(1, 1, 3, 1e18, 1e18 + 512); }), "accepted");
   EXPECT_NE(refused([] { return superellipse_arc(1, 1, 1.5, 0, 1); }), "accepted");
   EXPECT_NE(refused([] { return clothoid(Vec2{}, 0, 0, 1e6, 1); }), "accepted");
   EXPECT_NE(refused([] { return clothoid(Vec2{}, 0, 0, 1, -1); }), "accepted");
