@@ -78,7 +78,7 @@ CurveErrors CurveInterpolator::errors(const SmoothCurve<dim>& curve,
   const Interpolant<dim> p(tables_->rung(n), nodal);
   CurveErrors errors;
   double sum = 0.0, s = -1.0, slowest = HUGE_VAL;
-  const IntervalRule& rule = tables_->distance_rule;
+  static const IntervalRule rule = gauss_lobatto(200);
   for (std::size_t a = 0; a < rule.node.size(); ++a) {
     const double xi = 2.0 * rule.node[a] - 1.0;
     const double speed = norm(p.derivative(xi));
@@ -92,7 +92,7 @@ CurveErrors CurveInterpolator::errors(const SmoothCurve<dim>& curve,
 
   constexpr int panels = 8;
   double length = 0.0;
-  const IntervalRule& gauss = tables_->length_rule;
+  static const IntervalRule gauss = gauss_legendre(60);
   for (int i = 0; i < panels; ++i)
     for (std::size_t q = 0; q < gauss.node.size(); ++q)
       length += 2.0 / panels * gauss.weight[q] *

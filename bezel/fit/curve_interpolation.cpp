@@ -9,7 +9,18 @@
 namespace bezel {
 namespace {
 
-using namespace curve_search;
+using curve_search::arc_length_nodes;
+using curve_search::climb;
+using curve_search::Effort;
+using curve_search::Found;
+using curve_search::GraphError;
+using curve_search::minimise_distance;
+using curve_search::Nodes;
+using curve_search::Problem;
+using curve_search::projected_nodes;
+using curve_search::Projection;
+using curve_search::quick_climb;
+using curve_search::tangent_residual;
 
 void check_degree(int degree, int largest) {
   if (degree < 1 || degree > largest)

@@ -32,10 +32,7 @@ CurveRung::CurveRung(int degree) : n(degree), basis(degree), m(4 * degree) {
         slope[std::size_t(a) * width + k] += value_row(a)[i] * d_row(i)[k];
 }
 
-CurveInterpolator::Tables::Tables(int max_degree)
-    : distance_rule(gauss_lobatto(200)),
-      length_rule(gauss_legendre(60)),
-      l2_rules_(std::size_t(max_degree)) {
+CurveInterpolator::Tables::Tables(int max_degree) : l2_rules_(std::size_t(max_degree)) {
   rungs.reserve(std::size_t(max_degree));
   for (int n = 1; n <= max_degree; ++n) rungs.emplace_back(n);
 }

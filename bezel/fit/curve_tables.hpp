@@ -47,8 +47,6 @@ struct CurveInterpolator::Tables {
   const IntervalRule& l2_rule(int n) const;
 
   std::vector<CurveRung> rungs;
-  IntervalRule distance_rule;  ///< GLL, 200 points
-  IntervalRule length_rule;    ///< Gauss, 60 points
 
  private:
   struct Lazy {
