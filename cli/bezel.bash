@@ -17,8 +17,9 @@ _bezel() {
     words=$("${COMP_WORDS[0]}" --help 2>/dev/null | sed -n '/^Subcommands:/,$ s/^  \([a-z]\+\) .*/\1/p')
   else
     case $previous in
-      mesh) words='square rectangle disc annulus lshape' ;;
-      study) words='transfer compensated newton' ;;
+      mesh) words='square rectangle disc annulus lshape curves' ;;
+      study) words='transfer compensated newton curves' ;;
+      --method) words='standard chord arclength l2 equal-tangent orthogonal-distance best' ;;
       --precision) words='1 2 3 4 certified' ;;
       --newton) words='basic accurate full triple' ;;
       --basis) words='reference physical' ;;
