@@ -11,6 +11,7 @@
 #include "bezel/base/error.hpp"
 #include "bezel/bernstein/checks.hpp"
 #include "bezel/bernstein/interval_kernel.hpp"
+#include "bezel/fit/jacobian_grid.hpp"
 #include "bezel/fit/tensor_grid.hpp"
 
 namespace bezel {
@@ -83,16 +84,7 @@ std::vector<std::size_t> number_points(const std::vector<Vec2>& points, double d
 JacobianRange jacobian_range(const LobattoBasis& basis, std::span<const Vec2> nodes) {
   const auto n = static_cast<std::size_t>(basis.degree()) + 1;
   bernstein::checks::size(nodes.size(), n * n, "nodes of a map");
-  const std::vector<double> xi = fit_detail::lobatto_rule(std::min(3 * basis.degree(), 180)).node;
-  const auto at = fit_detail::evaluate_grid(fit_detail::sample(basis, xi), nodes);
-  JacobianRange range;
-  for (std::size_t q = 0; q < at.value.size(); ++q) {
-    const double det = cross(at.d_xi[q], at.d_eta[q]);
-    if (q == 0 || det < range.min)
-      range = {det, range.max, xi[q % xi.size()], xi[q / xi.size()], at.value[q]};
-    if (q == 0 || det > range.max) range.max = det;
-  }
-  return range;
+  return fit_detail::JacobianGrid(basis).range(nodes);
 }
 
 void require_positive(const JacobianRange& range, ElementId element) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bezel/fit/curve_interpolation.hpp"
 #include "bezel/fit/lobatto.hpp"
 #include "bezel/mesh/quad_mesh.hpp"
 #include "bezel/numeric/vec.hpp"
@@ -75,6 +76,25 @@ class GordonHall {
   LobattoBasis basis_;
   std::vector<Vec2> nodes_;
 };
+
+/// The four sides of a quadrilateral as curves: bottom and top from left to right, left and right
+/// from bottom to top.
+struct QuadCurves {
+  PlaneCurve bottom, right, top, left;
+};
+
+/// The map whose sides interpolate four curves.
+///
+/// @param degree  of the sides and the map, 1..interpolator.max_degree()
+/// @param method  standard and l2 take a side that is no graph over x as one over y
+/// @throws   InputError as GordonHall, and when the method gives no interpolant of a side (naming
+///           side and reason)
+/// @limits   splitting at breakpoints is left to the caller: a side with a corner has several maps
+GordonHall gordon_hall(const QuadCurves& curves, int degree, CurveMethod method,
+                       const CurveInterpolator& interpolator);
+/// The same with tables of its own.
+GordonHall gordon_hall(const QuadCurves& curves, int degree,
+                       CurveMethod method = CurveMethod::best);
 
 /// One mesh of several maps. Corners within 1e-12 of the diameter become one node; sides between
 /// the same corners whose control points agree within 1e-10 of it become one edge, with the control

@@ -10,6 +10,7 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/base/parallel.hpp"
+#include "bezel/fit/jacobian_grid.hpp"
 #include "bezel/fit/tensor_grid.hpp"
 #include "bezel/solve/function_value.hpp"
 
@@ -25,6 +26,7 @@ struct Skeleton {
   std::size_t size = 0;
   std::vector<std::size_t> global;  ///< per element: its boundary nodes, side by side, 4 N
   std::vector<bool> fixed;          ///< per number
+  bool single = false;              ///< one map, which messages do not number
 };
 
 /// One quadrilateral: all of its boundary is the boundary.
@@ -33,6 +35,7 @@ Skeleton single_skeleton(int degree) {
   out.size = 4 * static_cast<std::size_t>(degree);
   for (std::size_t k = 0; k < out.size; ++k) out.global.push_back(k);
   out.fixed.assign(out.size, true);
+  out.single = true;
   return out;
 }
 
@@ -282,15 +285,17 @@ class SpectralSolver {
       return known;
     };
 
+    const fit_detail::JacobianGrid grid(out.map_);
     std::vector<Condensed> elements(count);
     parallel_for(
         count,
         [&](std::size_t e) {
           const std::span<const Vec2> map_nodes(out.nodes_[e]);
-          require_positive(jacobian_range(out.map_, map_nodes), ElementId(e));
+          const ElementId id = skeleton.single ? ElementId{} : ElementId(e);
+          require_positive(grid.range(map_nodes), id);
           const auto x = fit_detail::evaluate_grid(at, map_nodes);
           const ElementSystem system =
-              assemble(out.basis_, local, coefficients(out.basis_, x, problem, ElementId(e)));
+              assemble(out.basis_, local, coefficients(out.basis_, x, problem, id));
           bool all_fixed = true;
           for (std::size_t k = 0; k < per_element; ++k)
             all_fixed = all_fixed && skeleton.fixed[skeleton.global[e * per_element + k]];
@@ -320,7 +325,6 @@ SpectralSolution solve_poisson(const GordonHall& map, const PoissonProblem& prob
   if (!problem.boundary) throw InputError("the boundary values are empty, expected a function");
   SpectralOptions chosen = options;
   chosen.degree = checked_degree(options.degree == 0 ? map.degree() : options.degree);
-  map.require_valid();
   return SpectralSolver::solve(map.basis(), {{map.nodes().begin(), map.nodes().end()}},
                                single_skeleton(chosen.degree), problem, chosen);
 }

@@ -93,8 +93,8 @@ class SpectralSolution {
 ///           Jacobian determinant is not positive on the grid of GordonHall::jacobian_range;
 ///           NumericsError when the system is not positive definite to rounding
 /// @accuracy e^x sin y on [-1, 1]^2: energy error 3.4e-7 at N = 8, 1.8e-12 at N = 12
-/// @cost     a dense Cholesky factorisation of the (N-1)^2 unknowns: 0.1 ms at N = 8, 2 ms at
-///           N = 16, 20 ms at N = 24
+/// @cost     a dense Cholesky factorisation of the (N-1)^2 unknowns: 0.25 ms at N = 8, 2.6 ms at
+///           N = 16, 13 ms at N = 24, 2 s at N = 48
 /// @source   [bjontegaard2009, sec. 3]
 SpectralSolution solve_poisson(const GordonHall& map, const PoissonProblem& problem,
                                const SpectralOptions& options = {});
