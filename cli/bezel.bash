@@ -18,7 +18,7 @@ _bezel() {
   else
     case $previous in
       mesh) words='square rectangle disc annulus lshape' ;;
-      study) words='transfer compensated newton' ;;
+      study) words='transfer compensated newton domains' ;;
       --precision) words='1 2 3 4 certified' ;;
       --newton) words='basic accurate full triple' ;;
       --basis) words='reference physical' ;;

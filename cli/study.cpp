@@ -15,6 +15,8 @@ struct StudyOptions {
 int run(const StudyOptions& options, const Context& context) {
   if (options.name == "compensated") return run_study_compensated(options.out, context.json);
   if (options.name == "newton") return run_study_newton(options.out, context.json);
+  if (options.name == "domains")
+    return run_study_domains(options.out, options.quick, context.threads, context.json);
   return run_study_transfer(options.out, options.quick, context.json);
 }
 
@@ -29,15 +31,16 @@ void add_study(CLI::App& app, Context& context) {
       ->add_option("NAME", options->name,
                    "transfer: errors and orders of transfers from a square to a disc; compensated: "
                    "polynomials evaluated near multiple roots; newton: ill-conditioned roots and "
-                   "intersections by Newton's method")
+                   "intersections by Newton's method; domains: areas and Laplace's equation on "
+                   "deformed quadrilaterals")
       ->required()
-      ->check(CLI::IsMember({"transfer", "compensated", "newton"}))
+      ->check(CLI::IsMember({"transfer", "compensated", "newton", "domains"}))
       ->type_name("");
   command->add_option("-o,--output", options->out, "Folder for tables and plots")
       ->required()
       ->type_name("DIR");
   command->add_flag("--quick", options->quick,
-                    "Fewer levels, within a minute (the others take a second)");
+                    "Fewer levels or degrees, within a minute (for transfer and domains)");
 }
 
 }  // namespace bezel::cli
