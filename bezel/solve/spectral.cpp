@@ -21,47 +21,34 @@ using Index = Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-/// Numbers of the nodes on vertices and edges, and which of them are on the boundary.
-struct Skeleton {
-  std::size_t size = 0;
-  std::vector<std::size_t> global;  ///< per element: its boundary nodes, side by side, 4 N
-  std::vector<bool> fixed;          ///< per number
-  bool single = false;              ///< one map, which messages do not number
-};
-
 /// One quadrilateral: all of its boundary is the boundary.
-Skeleton single_skeleton(int degree) {
-  Skeleton out;
-  out.size = 4 * static_cast<std::size_t>(degree);
-  for (std::size_t k = 0; k < out.size; ++k) out.global.push_back(k);
-  out.fixed.assign(out.size, true);
-  out.single = true;
-  return out;
+QuadTopology single_topology() {
+  return {{{{0, 1, 2, 3}, {0, 1, 2, 3}, {false, false, false, false}}},
+          4,
+          4,
+          {true, true, true, true},
+          {true, true, true, true}};
 }
 
-Skeleton mesh_skeleton(const QuadMesh& mesh, int degree) {
-  const auto inner = static_cast<std::size_t>(degree) - 1;
-  std::vector<std::size_t> vertex(mesh.node_count(), 0);
-  std::vector<bool> seen(mesh.node_count(), false);
-  std::size_t vertices = 0;
-  Skeleton out;
-  out.size = mesh.vertex_count() + mesh.edge_count() * inner;
-  out.fixed.assign(out.size, false);
+QuadTopology mesh_topology(const QuadMesh& mesh) {
+  constexpr auto none = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> vertex(mesh.node_count(), none);
+  QuadTopology out;
   for (std::size_t e = 0; e < mesh.element_count(); ++e) {
     const auto edges = mesh.edges(ElementId(e));
-    for (int side = 0; side < 4; ++side) {
-      const NodeId corner = mesh.corner(ElementId(e), side);
-      if (!seen[corner.index()]) {
-        seen[corner.index()] = true;
-        vertex[corner.index()] = vertices++;
-      }
-      out.global.push_back(vertex[corner.index()]);
-      const SideEdge edge = edges[static_cast<std::size_t>(side)];
-      const std::size_t first = mesh.vertex_count() + edge.edge.index() * inner;
-      for (std::size_t m = 0; m < inner; ++m)
-        out.global.push_back(first + (edge.reversed ? inner - 1 - m : m));
+    QuadTopology::Element element{};
+    for (std::size_t side = 0; side < 4; ++side) {
+      std::size_t& number = vertex[mesh.corner(ElementId(e), static_cast<int>(side)).index()];
+      if (number == none) number = out.vertices++;
+      element.vertex[side] = number;
+      element.edge[side] = edges[side].edge.index();
+      element.reversed[side] = edges[side].reversed;
     }
+    out.elements.push_back(element);
   }
+  out.edges = mesh.edge_count();
+  out.boundary_vertex.assign(out.vertices, false);
+  out.boundary_edge.assign(out.edges, false);
   for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
     const auto adjacent = mesh.adjacent(EdgeId(e));
     if (adjacent.size() > 2)
@@ -69,10 +56,30 @@ Skeleton mesh_skeleton(const QuadMesh& mesh, int degree) {
           fmt::format("edge {} has {} elements, expected one or two", e, adjacent.size()));
     if (adjacent.size() == 2) continue;
     const auto nodes = mesh.edge_nodes(EdgeId(e));
-    out.fixed[vertex[nodes.front().index()]] = true;
-    out.fixed[vertex[nodes.back().index()]] = true;
-    for (std::size_t m = 0; m < inner; ++m) out.fixed[mesh.vertex_count() + e * inner + m] = true;
+    out.boundary_edge[e] = true;
+    out.boundary_vertex[vertex[nodes.front().index()]] = true;
+    out.boundary_vertex[vertex[nodes.back().index()]] = true;
   }
+  return out;
+}
+
+/// Numbers of the nodes on vertices and edges, and which of them are on the boundary.
+struct Skeleton {
+  std::size_t size = 0;
+  std::vector<std::size_t> global;  ///< per element: its boundary nodes, side by side, 4 N
+  std::vector<bool> fixed;          ///< per number
+};
+
+Skeleton make_skeleton(const QuadTopology& topology, int degree) {
+  Skeleton out;
+  out.size = topology.skeleton_size(degree);
+  for (std::size_t e = 0; e < topology.elements.size(); ++e)
+    for (int side = 0; side < 4; ++side)
+      for (int k = 0; k < degree; ++k)
+        out.global.push_back(topology.skeleton_node(e, side, k, degree));
+  out.fixed = topology.boundary_vertex;
+  for (const bool boundary : topology.boundary_edge)
+    out.fixed.insert(out.fixed.end(), static_cast<std::size_t>(degree) - 1, boundary);
   return out;
 }
 
@@ -255,11 +262,14 @@ int checked_degree(int degree) {
 class SpectralSolver {
  public:
   /// @param nodes  per element, of the map
+  /// @param single  one map, which messages do not number
   static SpectralSolution solve(LobattoBasis map, std::vector<std::vector<Vec2>> nodes,
-                                const Skeleton& skeleton, const PoissonProblem& problem,
+                                QuadTopology topology, bool single, const PoissonProblem& problem,
                                 const SpectralOptions& options) {
     SpectralSolution out(LobattoBasis(options.degree), std::move(map));
     out.nodes_ = std::move(nodes);
+    out.topology_ = std::move(topology);
+    const Skeleton skeleton = make_skeleton(out.topology_, options.degree);
     const std::size_t count = out.nodes_.size();
     out.values_.resize(count);
     const LocalNodes local = local_nodes(options.degree);
@@ -291,7 +301,7 @@ class SpectralSolver {
         count,
         [&](std::size_t e) {
           const std::span<const Vec2> map_nodes(out.nodes_[e]);
-          const ElementId id = skeleton.single ? ElementId{} : ElementId(e);
+          const ElementId id = single ? ElementId{} : ElementId(e);
           require_positive(grid.range(map_nodes), id);
           const auto x = fit_detail::evaluate_grid(at, map_nodes);
           const ElementSystem system =
@@ -326,7 +336,7 @@ SpectralSolution solve_poisson(const GordonHall& map, const PoissonProblem& prob
   SpectralOptions chosen = options;
   chosen.degree = checked_degree(options.degree == 0 ? map.degree() : options.degree);
   return SpectralSolver::solve(map.basis(), {{map.nodes().begin(), map.nodes().end()}},
-                               single_skeleton(chosen.degree), problem, chosen);
+                               single_topology(), true, problem, chosen);
 }
 
 SpectralSolution solve_poisson(const QuadMesh& mesh, const PoissonProblem& problem,
@@ -340,8 +350,7 @@ SpectralSolution solve_poisson(const QuadMesh& mesh, const PoissonProblem& probl
   std::vector<std::vector<Vec2>> nodes;
   for (std::size_t e = 0; e < mesh.element_count(); ++e)
     nodes.push_back(lobatto_nodes(mesh, ElementId(e), map));
-  return SpectralSolver::solve(map, std::move(nodes), mesh_skeleton(mesh, chosen.degree), problem,
-                               chosen);
+  return SpectralSolver::solve(map, std::move(nodes), mesh_topology(mesh), false, problem, chosen);
 }
 
 }  // namespace bezel

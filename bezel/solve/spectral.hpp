@@ -1,11 +1,14 @@
 #pragma once
 // Elliptic equations on curved quadrilaterals by spectral elements at Gauss-Lobatto points.
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "bezel/field/field.hpp"
 #include "bezel/fit/gordon_hall.hpp"
 #include "bezel/fit/lobatto.hpp"
 #include "bezel/mesh/quad_mesh.hpp"
@@ -45,6 +48,24 @@ struct SpectralValue {
   Vec2 gradient;  ///< with respect to x and y
 };
 
+/// The vertices and edges of quadrilaterals, as a solver numbers them.
+struct QuadTopology {
+  struct Element {
+    std::array<std::size_t, 4> vertex, edge;  ///< corner 0..3, side 0..3
+    std::array<bool, 4> reversed;             ///< the side runs against its edge
+  };
+  std::vector<Element> elements;
+  std::size_t vertices = 0, edges = 0;
+  std::vector<bool> boundary_vertex, boundary_edge;
+
+  /// Number of nodes on vertices and edges when an edge has m intervals.
+  std::size_t skeleton_size(int m) const {
+    return vertices + edges * static_cast<std::size_t>(m - 1);
+  }
+  /// Number of the k-th node (0..m) of an element's side.
+  std::size_t skeleton_node(std::size_t element, int side, int k, int m) const;
+};
+
 /// A continuous piecewise polynomial on mapped quadrilaterals, by its values at the Gauss-Lobatto
 /// points of each element (ordered as GordonHall::nodes()).
 class SpectralSolution {
@@ -59,6 +80,7 @@ class SpectralSolution {
   std::span<const double> values(ElementId e) const;
   /// (N+1)^2 points of the same nodes.
   std::vector<Vec2> points(ElementId e) const;
+  const QuadTopology& topology() const { return topology_; }
   /// Value and gradient at (xi, eta) of an element, dimensionless; outside [-1, 1] it extrapolates.
   /// @cost O(N^2)
   SpectralValue evaluate(ElementId e, double xi, double eta) const;
@@ -70,6 +92,17 @@ class SpectralSolution {
   SpectralErrors errors(const PlaneFunction& exact, const PlaneGradient& exact_gradient,
                         int degree = 0) const;
 
+  /// The solution as a field on curved triangles, for files, pictures and transfer: every element
+  /// is cut into cells x cells squares and these into two triangles each, on which map and solution
+  /// are interpolated at equally spaced points of the reference square.
+  ///
+  /// @param cells   >= 1, at most 1e6 triangles in all
+  /// @param degree  of triangles and field, 1..10
+  /// @return   a continuous field on a conforming mesh (neighbours share control points); at most
+  ///           as accurate as its degree, not proven to be valid (see check_validity)
+  /// @accuracy the error of interpolation; rounding is magnified by up to 2^degree
+  Field field(const std::string& name, int cells, int degree) const;
+
  private:
   friend class SpectralSolver;
   SpectralSolution(LobattoBasis basis, LobattoBasis map)
@@ -79,6 +112,7 @@ class SpectralSolution {
   LobattoBasis basis_, map_;                 // of the values and of the elements' maps
   std::vector<std::vector<Vec2>> nodes_;     // per element, of the map
   std::vector<std::vector<double>> values_;  // per element
+  QuadTopology topology_;
   std::size_t unknowns_ = 0;
 };
 

@@ -25,6 +25,15 @@ Vec2 physical_gradient(double u_xi, double u_eta, const Vec2& d_xi, const Vec2& 
 
 }  // namespace
 
+std::size_t QuadTopology::skeleton_node(std::size_t element, int side, int k, int m) const {
+  const Element& e = elements[element];
+  const auto s = static_cast<std::size_t>(side);
+  if (k == 0) return e.vertex[s];
+  if (k == m) return e.vertex[(s + 1) % 4];
+  return vertices + e.edge[s] * static_cast<std::size_t>(m - 1) +
+         static_cast<std::size_t>(e.reversed[s] ? m - 1 - k : k - 1);
+}
+
 std::size_t SpectralSolution::checked(ElementId e) const {
   if (!e.valid() || e.index() >= values_.size())
     throw InputError(

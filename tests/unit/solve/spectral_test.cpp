@@ -173,6 +173,40 @@ TEST(Spectral, ARingWithReversedAndTurnedEdges) {
   EXPECT_LT(errors.energy, 1e-10);
 }
 
+TEST(Spectral, TheFieldOnTrianglesIsTheSolution) {
+  const std::vector<GordonHall> maps{ring_map(16, 0.0, pi), ring_map(16, pi, 2 * pi)};
+  const Formula log("log(x^2 + y^2)/2");
+  const SpectralSolution solution = solve_poisson(join(maps), {log});
+  const Field field = solution.field("u", 4, 5);
+  const TriangleMesh& mesh = field.mesh();
+  EXPECT_EQ(mesh.element_count(), 2u * 2u * 16u);
+  // A ring: as many vertices and triangles as edges, 16 edges on the boundary.
+  EXPECT_EQ(mesh.vertex_count() + mesh.element_count(), mesh.edge_count());
+  std::size_t boundary = 0;
+  for (std::size_t e = 0; e < mesh.edge_count(); ++e)
+    boundary += mesh.is_boundary(EdgeId(e)) ? 1 : 0;
+  EXPECT_EQ(boundary, 16u);
+  for (std::size_t e = 0; e < mesh.element_count(); ++e)
+    EXPECT_EQ(check_validity(5, mesh.gather(ElementId(e))).status, Validity::valid);
+  // Interpolation of fifth degree is of sixth order, in the region too.
+  const Field fine = solution.field("u", 8, 5);
+  const auto area_error = [](const TriangleMesh& of) {
+    double area = 0;
+    for (std::size_t e = 0; e < of.element_count(); ++e)
+      area += bezel::area(5, of.gather(ElementId(e)));
+    return std::fabs(area - 3 * pi);
+  };
+  const auto error = [&](const Field& of) { return error_norms(of, std::span(&log, 1)).l2; };
+  EXPECT_GT(std::log2(area_error(mesh) / area_error(fine.mesh())), 5.5);
+  EXPECT_NEAR(std::log2(error(field) / error(fine)), 6.0, 0.5);
+  EXPECT_EQ(message_of([&] { (void)solution.field("u", 0, 2); }),
+            "0 cells on 2 elements, expected at least 1 and no more than 1000000 triangles");
+  EXPECT_EQ(message_of([&] { (void)solution.field("u", 1000, 2); }),
+            "1000 cells on 2 elements, expected at least 1 and no more than 1000000 triangles");
+  EXPECT_EQ(message_of([&] { (void)solution.field("u", 2, 11); }),
+            "triangles of degree 11, expected 1 to 10");
+}
+
 TEST(Spectral, TheSameBitsForAnyNumberOfThreads) {
   const QuadMesh mesh = join(grid(3, 2));
   SpectralOptions options;
