@@ -133,6 +133,62 @@ TEST(GordonHall, BadInput) {
             "quadrilateral 1: the jacobian determinant is -0.25 at xi ");
 }
 
+PlaneCurve line(const Vec2& a, const Vec2& b) {
+  return PlaneCurve([=](double t) {
+    return CurveJet<2>{0.5 * (1 - t) * a + 0.5 * (1 + t) * b, 0.5 * (b - a), Vec2{0.0, 0.0}};
+  });
+}
+PlaneCurve half_circle() {  // from (-1, 1) over the top to (1, 1)
+  return PlaneCurve([](double t) {
+    const double phi = 0.5 * pi * (1 - t), h = -0.5 * pi;
+    const Vec2 e{std::cos(phi), std::sin(phi)}, turned{-e.y(), e.x()};
+    return CurveJet<2>{Vec2{0.0, 1.0} + e, h * turned, -(h * h) * e};
+  });
+}
+
+TEST(GordonHallOfCurves, EveryMethodInterpolatesTheSides) {
+  const PlaneCurve top([](double t) {
+    return CurveJet<2>{Vec2{t, 1.0 + 0.3 * std::cos(pi * t)},
+                       Vec2{1.0, -0.3 * pi * std::sin(pi * t)},
+                       Vec2{0.0, -0.3 * pi * pi * std::cos(pi * t)}};
+  });
+  const QuadCurves curves{line({-1, 0}, {1, 0}), line({1, 0}, top(1.0).x), top,
+                          line({-1, 0}, top(-1.0).x)};
+  const CurveInterpolator interpolator(12);
+  for (const CurveMethod method :
+       {CurveMethod::standard, CurveMethod::chord, CurveMethod::arc_length, CurveMethod::l2,
+        CurveMethod::equal_tangent, CurveMethod::orthogonal_distance, CurveMethod::best}) {
+    const GordonHall map = gordon_hall(curves, 12, method, interpolator);
+    map.require_valid();
+    for (std::size_t i = 0; i <= 12; ++i) {
+      const Vec2 p = map.nodes()[13 * 12 + i];
+      EXPECT_NEAR(p.y(), 1.0 + 0.3 * std::cos(pi * p.x()), 1e-15) << name(method);
+    }
+    EXPECT_NEAR(map.area(), 2.0, method == CurveMethod::arc_length ? 1e-3 : 1e-8) << name(method);
+  }
+}
+
+TEST(GordonHallOfCurves, SidesWithoutInterpolantSayWhy) {
+  const PlaneCurve hook([](double t) {  // turns back on itself in x and y
+    const double phi = 1.5 * pi * t;
+    const Vec2 e{std::sin(phi), 3.0 - std::cos(phi)};
+    return CurveJet<2>{e, 1.5 * pi * Vec2{std::cos(phi), std::sin(phi)},
+                       2.25 * pi * pi * Vec2{-std::sin(phi), std::cos(phi)}};
+  });
+  const QuadCurves curves{line({-1, 0}, {1, 0}), line({1, 0}, hook(1.0).x), hook,
+                          line({-1, 0}, hook(-1.0).x)};
+  EXPECT_EQ(message_of([&] { gordon_hall(curves, 8, CurveMethod::chord); }),
+            "the top side has no interpolant by the method chord: " +
+                std::string(name(CurveStatus::not_a_chord_map)));
+  EXPECT_EQ(message_of([&] { gordon_hall(curves, 8, CurveMethod::standard); }),
+            "the top side has no interpolant by the method standard: " +
+                std::string(name(CurveStatus::not_a_graph)));
+  const QuadCurves apart{line({-1, 0}, {1, 0}), line({1, 0}, {1, 1.5}), half_circle(),
+                         line({-1, 0}, {-1, 1})};
+  EXPECT_EQ(message_of([&] { gordon_hall(apart, 8); }).substr(0, 46),
+            "the sides at the top right corner end 0.5 apar");
+}
+
 TEST(Join, ARingOfTwoMapsHasDifferentCurvesBetweenTheSameCorners) {
   const std::vector<GordonHall> maps{ring_map(16, 0.0, pi), ring_map(16, pi, 2 * pi)};
   const QuadMesh mesh = join(maps);
