@@ -82,8 +82,7 @@ Field SpectralSolution::field(const std::string& name, int cells, int degree) co
             u_here.push_back(u[p]);
           }
           const auto b = bernstein::from_lagrange(degree, std::span<const Vec2>(x_here));
-          const auto c =
-              bernstein::from_lagrange(degree, std::span<const double>(u_here));
+          const auto c = bernstein::from_lagrange(degree, std::span<const double>(u_here));
           for (std::size_t k = 0; k < points.size(); ++k) {
             const NodeId n = number[points[k]];
             elements.push_back(n);
