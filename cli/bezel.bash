@@ -18,7 +18,7 @@ _bezel() {
   else
     case $previous in
       mesh) words='square rectangle disc annulus lshape curves' ;;
-      study) words='transfer compensated newton curves' ;;
+      study) words='transfer compensated newton curves domains' ;;
       --method) words='standard chord arclength l2 equal-tangent orthogonal-distance best' ;;
       --precision) words='1 2 3 4 certified' ;;
       --newton) words='basic accurate full triple' ;;

@@ -16,6 +16,8 @@ int run(const StudyOptions& options, const Context& context) {
   if (options.name == "compensated") return run_study_compensated(options.out, context.json);
   if (options.name == "newton") return run_study_newton(options.out, context.json);
   if (options.name == "curves") return run_study_curves(options.out, options.quick, context.json);
+  if (options.name == "domains")
+    return run_study_domains(options.out, options.quick, context.threads, context.json);
   return run_study_transfer(options.out, options.quick, context.json);
 }
 
@@ -27,18 +29,20 @@ void add_study(CLI::App& app, Context& context) {
       add_command(app, context, "study", "Repeat a published experiment and compare",
                   "bezel study transfer --quick -o study", options, run);
   command
-      ->add_option("NAME", options->name,
-                   "transfer: errors and orders of transfers from a square to a disc; compensated: "
-                   "polynomials evaluated near multiple roots; newton: ill-conditioned roots and "
-                   "intersections by Newton's method; curves: interpolation of curves in the plane")
+      ->add_option(
+          "NAME", options->name,
+          "transfer: errors and orders of transfers from a square to a disc; compensated: "
+          "polynomials evaluated near multiple roots; newton: ill-conditioned roots and "
+          "intersections by Newton's method; curves: interpolation of curves in the plane; "
+          "domains: areas and Laplace's equation on deformed quadrilaterals")
       ->required()
-      ->check(CLI::IsMember({"transfer", "compensated", "newton", "curves"}))
+      ->check(CLI::IsMember({"transfer", "compensated", "newton", "curves", "domains"}))
       ->type_name("");
   command->add_option("-o,--output", options->out, "Folder for tables and plots")
       ->required()
       ->type_name("DIR");
   command->add_flag("--quick", options->quick,
-                    "Fewer levels, within a minute (the others take a second)");
+                    "Fewer levels or degrees, within a minute (for transfer and domains)");
 }
 
 }  // namespace bezel::cli

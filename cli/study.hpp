@@ -24,4 +24,9 @@ int run_study_newton(const std::string& out_dir, bool json);
 /// times. Output as above. @param quick  degrees up to 16 only
 int run_study_curves(const std::string& out_dir, bool quick, bool json);
 
+/// Deformed quadrilaterals whose sides are interpolated by different methods [bjontegaard2009, sec.
+/// 3]: errors of the area and of Laplace's equation against the degree (figures 19 to 26), grids.
+/// Output as above.
+int run_study_domains(const std::string& out_dir, bool quick, int threads, bool json);
+
 }  // namespace bezel::cli

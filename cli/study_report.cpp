@@ -61,6 +61,11 @@ void StudyReport::add_plot(const std::string& file, std::vector<Series> series,
   plots_.push_back({file, std::move(series), std::move(options), tables_.size()});
 }
 
+void StudyReport::add_picture(const std::string& file, const std::string& title,
+                              CurvePicture picture, CurveDrawOptions options) {
+  pictures_.push_back({file, title, std::move(picture), options, tables_.size()});
+}
+
 std::string StudyReport::markdown() const {
   std::string text;
   for (std::size_t t = 0; t < tables_.size(); ++t) {
@@ -84,6 +89,8 @@ std::string StudyReport::markdown() const {
     text += "\n";
     for (const Plot& p : plots_)
       if (p.table == t + 1) text += fmt::format("![{}]({})\n\n", p.options.title, p.file);
+    for (const Picture& p : pictures_)
+      if (p.table == t + 1) text += fmt::format("![{}]({})\n\n", p.title, p.file);
   }
   return text;
 }
@@ -121,6 +128,7 @@ void StudyReport::write(const std::string& folder, bool json) const {
     write_file(path(study_ + ".md"), text);
     for (const StudyTable& table : tables_) write_file(path(table.file + ".csv"), csv(table));
     for (const Plot& p : plots_) plot(path(p.file), p.series, p.options);
+    for (const Picture& p : pictures_) draw_curves(path(p.file), p.picture, p.options);
     print(json ? to_text(document()) : text);
   } catch (...) {
     for (const std::string& file : files) std::filesystem::remove(file, error);

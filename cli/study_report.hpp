@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bezel/view/draw.hpp"
+#include "bezel/view/draw_curves.hpp"
 #include "cli/output.hpp"
 
 namespace bezel::cli {
@@ -48,10 +49,13 @@ class StudyReport {
   void add(StudyTable table);
   /// A plot, shown below the table added last.
   void add_plot(const std::string& file, std::vector<Series> series, PlotOptions options);
-  /// Writes <study>.md, a CSV file for each table and the plots to a folder, which it creates, and
-  /// prints Markdown or one JSON object {"schema": "bezel/study/1", "study", "tables": [{"title",
-  /// "columns", "rows", "paper"}]}: in rows (with the keys in columns) what was measured, in paper
-  /// what was expected. Leaves nothing when it fails.
+  /// A picture of curves, shown in the same place.
+  void add_picture(const std::string& file, const std::string& title, CurvePicture picture,
+                   CurveDrawOptions options);
+  /// Writes <study>.md, a CSV file for each table, the plots and the pictures to a folder, which it
+  /// creates, and prints Markdown or one JSON object {"schema": "bezel/study/1", "study", "tables":
+  /// [{"title", "columns", "rows", "paper"}]}: in rows (with the keys in columns) what was
+  /// measured, in paper what was expected. Leaves nothing when it fails.
   void write(const std::string& folder, bool json) const;
 
  private:
@@ -61,12 +65,19 @@ class StudyReport {
     PlotOptions options;
     std::size_t table;
   };
+  struct Picture {
+    std::string file, title;
+    CurvePicture picture;
+    CurveDrawOptions options;
+    std::size_t table;
+  };
   std::string markdown() const;
   Json document() const;
 
   std::string study_;
   std::vector<StudyTable> tables_;
   std::vector<Plot> plots_;
+  std::vector<Picture> pictures_;
 };
 
 }  // namespace bezel::cli

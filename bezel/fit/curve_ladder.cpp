@@ -5,11 +5,28 @@ namespace {
 
 // Below this fraction of the length a distance is rounding error.
 constexpr double floor_of_length = 4e-15;
+// Nodes that no crowded start has found and as near to the curve as this are taken when their speed
+// is more even: crowding buys the last digit with a slow, uneven interpolant, and maps of regions
+// by the curve suffer.
+constexpr double nearly_floor = 3e-14;
 // A degree whose distance falls by this factor needs no closer look; the last degree, by the
 // second.
 constexpr double enough = 0.3, enough_at_last = 0.15;
 // Below this fraction of the length, degrees that bring no gain are left out.
 constexpr double nearly_exact = 1e-12;
+
+// Whether the distance is below a fraction of the length.
+template <int dim>
+bool within(const Problem<dim>& problem, const Score<dim>& score, double fraction) {
+  return score.valid && score.d2 < fraction * problem.length;
+}
+
+// Whether to take nodes of the chain without crowded starts instead of others.
+template <int dim>
+bool more_even(const Problem<dim>& problem, const Found<dim>& plain, const Found<dim>& other) {
+  return within(problem, plain.score, nearly_floor) &&
+         plain.score.min_speed > 1.1 * other.score.min_speed;
+}
 
 // Nodes of degree `next.n` from those of a lower degree: feet of the points of its interpolant.
 //
@@ -125,7 +142,7 @@ class Level {
   Level(const Problem<dim>& problem, int degree, Effort& effort)
       : problem_(problem), degree_(degree), effort_(effort) {}
   Found<dim> best, root;
-  Found<dim> plain;  // the best of those offered before plain_over
+  Found<dim> plain, plain_root;  // the best of those offered before plain_over
   bool plain_over = false;
 
   Score<dim> offer(const Nodes<dim>& nodes, bool is_root) {
@@ -181,9 +198,7 @@ class Level {
   static bool fell(const Found<dim>& found, const Found<dim>& last, double factor) {
     return found.score.valid && last.score.valid && found.score.d2 < factor * last.score.d2;
   }
-  bool at_floor() const {
-    return best.score.valid && best.score.d2 < floor_of_length * problem_.length;
-  }
+  bool at_floor() const { return within(problem_, best.score, floor_of_length); }
 
  private:
   void keep(const Nodes<dim>& nodes, const Score<dim>& score, bool is_root) {
@@ -192,6 +207,7 @@ class Level {
     if (better(score, best)) best = found;
     if (!plain_over && better(score, plain)) plain = found;
     if (is_root && better(score, root)) root = found;
+    if (is_root && !plain_over && better(score, plain_root)) plain_root = found;
   }
   bool better(const Score<dim>& score, const Found<dim>& than) const {
     if (than.nodes.n != degree_) return true;  // nothing yet
@@ -284,10 +300,16 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
   int idle = 0;  // nearly exact degrees in a row that brought no gain
   for (int n = 2; n <= degree; ++n) {
     const bool final = n == degree;
-    if (last.score.valid && last.score.d2 < floor_of_length * problem.length) {
+    if (within(problem, last.score, floor_of_length)) {
       // Exact already: the same polynomial with more nodes is a root too, to rounding.
+      const bool even = more_even(problem, plain, last);
       Level<dim> top(problem, degree, effort);
-      top.offer(lift(problem, last.nodes, degree), true);
+      const Nodes<dim> start = lift(problem, even ? plain.nodes : last.nodes, degree);
+      top.offer(start, true);
+      if (even) {
+        top.newton(start, true);
+        top.polish(top.best, 8);
+      }
       best = top.best;
       root = top.root;
       return;
@@ -330,12 +352,12 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
     plain = level.plain;
     last = level.best;
     if (final) {
-      best = level.best;
-      root = level.root;
+      best = more_even(problem, level.plain, level.best) ? level.plain : level.best;
+      root = more_even(problem, level.plain_root, level.root) ? level.plain_root : level.root;
     } else if (gained || last.score.d2 >= nearly_exact * problem.length) {
       idle = 0;
     } else if (++idle == 2) {
-      plain = last;
+      if (!more_even(problem, plain, last)) plain = last;
       n = degree - 1;
     }
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bezel/base/error.hpp"
+#include "bezel/mesh/edge_table.hpp"
 
 namespace bezel {
 namespace {
@@ -65,60 +66,6 @@ void check_tags(const Tags& tags, int degree, std::size_t element_count, std::si
     if (!exists(tags.points[p].node))
       fail("tagged point", p, missing_node(tags.points[p].node, node_count));
 }
-
-std::uint64_t mix(std::uint64_t x) {  // the finaliser of MurmurHash3
-  x ^= x >> 33;
-  x *= 0xff51afd7ed558ccdULL;
-  x ^= x >> 33;
-  x *= 0xc4ceb9fe1a85ec53ULL;
-  return x ^ (x >> 33);
-}
-
-/// Numbers the distinct node sequences of one length in order of first appearance (open
-/// addressing).
-class SequenceTable {
- public:
-  SequenceTable(std::size_t length, std::size_t expected) : length_(length) {
-    std::size_t capacity = 16;
-    while (capacity < 2 * expected) capacity *= 2;
-    slots_.assign(capacity, -1);
-    sequences_.reserve(expected * length);
-  }
-
-  std::int32_t number(const NodeId* sequence) {
-    // The ends and one inner node tell nearly all edges apart; equality is decided on all nodes.
-    std::uint64_t h = mix(pair(sequence[0], sequence[length_ - 1]));
-    if (length_ > 2) h = mix(h ^ static_cast<std::uint32_t>(sequence[1].value));
-    for (std::size_t slot = h & (slots_.size() - 1);; slot = (slot + 1) & (slots_.size() - 1)) {
-      std::int32_t& found = slots_[slot];
-      if (found < 0) {
-        found = count_++;
-        sequences_.insert(sequences_.end(), sequence, sequence + length_);
-        return found;
-      }
-      const NodeId* old = sequences_.data() + static_cast<std::size_t>(found) * length_;
-      bool same = true;
-      for (std::size_t i = 0; i < length_ && same; ++i) same = old[i] == sequence[i];
-      if (same) return found;
-    }
-  }
-
-  std::vector<NodeId> take() {
-    sequences_.shrink_to_fit();
-    return std::move(sequences_);
-  }
-
- private:
-  static std::uint64_t pair(NodeId a, NodeId b) {
-    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(a.value)) << 32 |
-           static_cast<std::uint32_t>(b.value);
-  }
-
-  std::size_t length_;
-  std::int32_t count_ = 0;
-  std::vector<std::int32_t> slots_;
-  std::vector<NodeId> sequences_;
-};
 
 }  // namespace
 
@@ -179,39 +126,18 @@ SimplexMesh<dim>::SimplexMesh(int degree, std::vector<Vec<dim>> control,
 
 template <int dim>
 void SimplexMesh<dim>::build_edges() {
-  const auto size = static_cast<std::size_t>(nodes_per_element());
   const auto length = static_cast<std::size_t>(degree_) + 1;
-  std::array<std::array<std::size_t, max_degree + 1>, edges_per_element> positions{};
+  std::vector<std::size_t> positions;
   for (std::size_t s = 0; s < edges_per_element; ++s)
-    for (std::size_t m = 0; m < length; ++m)
-      positions[s][m] = static_cast<std::size_t>(
-          edge_index<dim>(degree_, local_edges[s][0], local_edges[s][1], static_cast<int>(m)));
-
-  SequenceTable table(length, element_count_ * edges_per_element);
-  element_edges_.resize(element_count_ * edges_per_element);
-  std::array<NodeId, max_degree + 1> sequence{};
-  for (std::size_t e = 0; e < element_count_; ++e) {
-    const NodeId* nodes = elements_.data() + e * size;
-    for (std::size_t s = 0; s < edges_per_element; ++s) {
-      const bool reversed = nodes[positions[s].front()] > nodes[positions[s][length - 1]];
-      for (std::size_t m = 0; m < length; ++m)
-        sequence[reversed ? length - 1 - m : m] = nodes[positions[s][m]];
-      element_edges_[e * edges_per_element + s] = {EdgeId(table.number(sequence.data())), reversed};
-    }
-  }
-  edge_nodes_ = table.take();
-
-  // Adjacency by counting sort: elements along an edge come in ascending order.
-  adjacent_offset_.assign(edge_count() + 1, 0);
-  for (const SideEdge& side : element_edges_) ++adjacent_offset_[side.edge.index() + 1];
-  for (std::size_t e = 0; e < edge_count(); ++e) adjacent_offset_[e + 1] += adjacent_offset_[e];
-  adjacent_.resize(element_edges_.size());
-  std::vector<std::size_t> next(adjacent_offset_.begin(), adjacent_offset_.end() - 1);
-  for (std::size_t i = 0; i < element_edges_.size(); ++i) {
-    const SideEdge& side = element_edges_[i];
-    adjacent_[next[side.edge.index()]++] = {ElementId(i / edges_per_element),
-                                            static_cast<int>(i % edges_per_element), side.reversed};
-  }
+    for (int m = 0; m <= degree_; ++m)
+      positions.push_back(static_cast<std::size_t>(
+          edge_index<dim>(degree_, local_edges[s][0], local_edges[s][1], m)));
+  mesh_detail::EdgeTable table = mesh_detail::build_edge_table(
+      elements_, static_cast<std::size_t>(nodes_per_element()), positions, length);
+  edge_nodes_ = std::move(table.nodes);
+  element_edges_ = std::move(table.sides);
+  adjacent_offset_ = std::move(table.offset);
+  adjacent_ = std::move(table.adjacent);
 }
 
 template <int dim>

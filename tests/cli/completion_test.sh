@@ -26,6 +26,7 @@ expect "eval" ev
 expect "roots" ro
 expect "compensated" study co
 expect "newton" study n
+expect "domains" study d
 expect "certified" eval p.json --precision c
 expect "full" roots p.json --newton f
 expect "--max-iterations" roots --max
