@@ -280,6 +280,7 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
                   });
     flush(g, d, pt, mapped);
     for (std::size_t n = 0; n < functions; ++n) {
+      sums.basis[n] += exact.basis[n];
       const double difference = exact.basis[n] - mapped.basis[n];
       for (std::size_t c = 0; c < nc; ++c) {
         sums.product[n * nc + c] +=
