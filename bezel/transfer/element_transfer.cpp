@@ -312,8 +312,10 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
 }
 
 ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment> segments,
-                                        GivenList& given, std::span<double> made) {
+                                        GivenList& given, std::span<double> made,
+                                        ElementBlocks* blocks) {
   ElementOutcome outcome;
+  if (blocks != nullptr) blocks->reset(static_cast<std::size_t>(groups_[0].components));
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
   const double own_size = target_.element_box[static_cast<std::size_t>(t)].diameter();
   std::size_t components = 0;
@@ -356,6 +358,10 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
       const bool silent = std::abs(area) <= silent_gap * own_area;
       if (!(silent || policy_ == Uncovered::extend)) continue;
       extended += area;
+      if (blocks != nullptr) {
+        extension_blocks(groups_[0], t, run, area, centre, sums_[0], *blocks);
+        continue;
+      }
       for (std::size_t i = 0; i < groups_.size(); ++i) {
         const auto nc = static_cast<std::size_t>(groups_[i].components);
         const std::span<double> here(pair_mass.data() + c0, nc);
@@ -375,6 +381,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
       for (std::size_t c = 0; c < nc; ++c) masses_[c0 + c] += here[c];
       c0 += nc;
     }
+    if (blocks != nullptr) keep_pair(d, sums_[0], pair_mass, *blocks);
     outcome.covered_area += area;
     given.donor.push_back(d);
     given.area.push_back(area);
@@ -386,9 +393,11 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
   const double integrated = outcome.covered_area + extended;
   const auto start = std::chrono::steady_clock::now();
   std::size_t c0 = 0;
-  for (std::size_t i = 0; i < groups_.size(); ++i) {
+  if (blocks != nullptr) finish_blocks(groups_[0], t, sums_[0], integrated, *blocks, outcome);
+  for (std::size_t i = 0; i < groups_.size() && blocks == nullptr; ++i) {
     const auto nc = static_cast<std::size_t>(groups_[i].components);
-    finish(groups_[i], t, sums_[i], std::span(masses_).subspan(c0, nc), integrated, outcome);
+    finish(groups_[i], t, sums_[i], std::span(masses_).subspan(c0, nc), integrated,
+           groups_[i].target_out(t), outcome);
     c0 += nc;
   }
   outcome.solve_seconds =

@@ -19,6 +19,11 @@ Frame affine_frame(const std::array<Vec2, 3>& corners);
 struct Group {
   Group(const OverlayMesh& donor, const OverlayMesh& target, std::span<const Field* const> fields,
         std::shared_ptr<const Space> target_space);
+  /// The donor's basis functions as components: component c is basis function c of every element
+  /// (zero on elements of lower degree).
+  Group(const OverlayMesh& donor, const OverlayMesh& target,
+        std::shared_ptr<const Space> donor_space, std::shared_ptr<const Space> target_space,
+        int threads);
 
   std::shared_ptr<const Space> donor_space, target_space;
   int components = 0;
@@ -29,13 +34,20 @@ struct Group {
   /// corners where it fits the element (mass matrices are well conditioned there), else the space's
   /// own frame.
   std::vector<Frame> target_frame;
-  std::vector<double>
-      scaled;  ///< donor coefficients times multinomials, per element [component][n]
+  std::vector<double> scaled;      ///< donor coefficients times multinomials, per element
+                                   ///< [component][n]; of basis functions per degree
   std::vector<double> donor_mass;  ///< per element [component]
   std::vector<double> out;         ///< target coefficients, per element [n][component]
 
   std::span<const double> donor_scaled(std::int32_t e) const;
   std::span<double> target_out(std::int32_t e);
+
+ private:
+  void make_frames(const OverlayMesh& donor, const OverlayMesh& target);
+  std::vector<std::size_t> scaled_offset_;  // per degree, for basis functions
 };
+
+/// Integral of each basis function over its element, in the order of the coefficients.
+std::vector<double> basis_integrals(const std::shared_ptr<const Space>& space, int threads);
 
 }  // namespace bezel::detail
