@@ -53,6 +53,9 @@ void check(const std::shared_ptr<const Space>& donor,
     throw InputError("transfer operator: degree " + std::to_string(options.degree) +
                      " is not supported, expected 0 to " + std::to_string(Space::max_degree));
   }
+  if (options.weight || !options.density.empty()) {
+    throw InputError("transfer operator: weights are not supported, expected none");
+  }
 }
 
 }  // namespace
@@ -255,29 +258,30 @@ Field TransferOperator::apply_adjoint(const Field& g, int threads) const {
   const auto blocks_of = [&](std::size_t n, const auto& body) {
     parallel_for((n + detail::chunk_size - 1) / detail::chunk_size,
                  [&](std::size_t chunk) {
-                   detail::ElementMass::Matrices matrices;
+                   detail::ElementMass::Element element;
                    for (std::size_t e = chunk * detail::chunk_size;
                         e < std::min(n, (chunk + 1) * detail::chunk_size); ++e)
-                     body(static_cast<std::int32_t>(e), matrices);
+                     body(static_cast<std::int32_t>(e), element);
                  },
                  threads);
   };
-  blocks_of(m.target->mesh()->element_count(), [&](std::int32_t t, auto& matrices) {
-    target_mass.compute(ElementId(t), {}, matrices);
+  blocks_of(m.target->mesh()->element_count(), [&](std::int32_t t, auto& element) {
+    target_mass.prepare(ElementId(t), element);
+    detail::ElementMass::weigh({}, element);
     const auto own = g.coefficients(ElementId(t));
     const std::size_t n = size_on(*m.target, t);
     double* place = load.data() + m.target->offset(ElementId(t)) * nc;
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j = 0; j < n; ++j) {
         for (std::size_t c = 0; c < nc; ++c)
-          place[i * nc + c] += matrices.mass[i * n + j] * own[j * nc + c];
+          place[i * nc + c] += element.mass[i * n + j] * own[j * nc + c];
       }
     }
   });
   const std::shared_ptr<const Space> space = broken(m.donor);
   const detail::ElementMass donor_mass(space);
   std::vector<double> out(space->coefficient_count() * nc);
-  blocks_of(space->mesh()->element_count(), [&](std::int32_t d, auto& matrices) {
+  blocks_of(space->mesh()->element_count(), [&](std::int32_t d, auto& element) {
     const std::size_t n = size_on(*space, d);
     const std::span<double> place(out.data() + space->offset(ElementId(d)) * nc, n * nc);
     m.rows.for_column(d, [&](std::int32_t t, const OperatorRows::Block& block) {
@@ -290,8 +294,9 @@ Field TransferOperator::apply_adjoint(const Field& g, int threads) const {
         }
       }
     });
-    donor_mass.compute(ElementId(d), {}, matrices);
-    if (!detail::ElementMass::solve(matrices, nc, place)) {
+    donor_mass.prepare(ElementId(d), element);
+    detail::ElementMass::weigh({}, element);
+    if (!detail::ElementMass::solve(element, place)) {
       throw NumericsError("donor triangle " + std::to_string(d) +
                           ": its mass matrix is singular in double precision");
     }

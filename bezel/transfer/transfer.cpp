@@ -15,6 +15,7 @@
 #include "bezel/transfer/overlay.hpp"
 #include "bezel/transfer/overlay_mesh.hpp"
 #include "bezel/transfer/sweep.hpp"
+#include "bezel/transfer/weighted.hpp"
 
 namespace bezel {
 namespace {
@@ -308,6 +309,8 @@ TransferResult transfer(std::span<const Field> donors,
                         const TransferOptions& options, const Progress& progress) {
   const auto start = clock::now();
   check_arguments(donors, target_mesh, options);
+  if (options.weight || !options.density.empty())
+    return detail::transfer_weighted(donors, target_mesh, options, progress);
   const detail::OverlayMesh donor(donors.front().space().mesh(), "donor", options.threads);
   const detail::OverlayMesh target(target_mesh, "target", options.threads);
   Plan plan = make_plan(donors, target_mesh, donor, target, options);
