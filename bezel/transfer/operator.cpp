@@ -7,14 +7,17 @@
 #include <optional>
 #include <vector>
 
+#include "bezel/base/atomic_file.hpp"
 #include "bezel/base/parallel.hpp"
 #include "bezel/transfer/element_mass.hpp"
+#include "bezel/transfer/layout.hpp"
 #include "bezel/transfer/operator_rows.hpp"
 #include "bezel/transfer/sweep.hpp"
 
 namespace bezel {
 
 using detail::OperatorRows;
+using detail::same_layout;
 
 namespace {
 
@@ -23,21 +26,6 @@ constexpr double covered = 1e-9;
 
 std::size_t size_on(const Space& space, std::int32_t e) {
   return static_cast<std::size_t>(bernstein::triangle_size(space.degree(ElementId(e))));
-}
-
-bool same_mesh(const TriangleMesh& a, const TriangleMesh& b) {
-  return &a == &b ||
-         (a.degree() == b.degree() && std::ranges::equal(a.connectivity(), b.connectivity()) &&
-          std::ranges::equal(a.control(), b.control()));
-}
-
-bool same_layout(const Space& a, const Space& b) {
-  if (&a == &b) return true;
-  if (a.basis() != b.basis() || !same_mesh(*a.mesh(), *b.mesh())) return false;
-  for (std::size_t e = 0; e < a.mesh()->element_count(); ++e) {
-    if (a.degree(ElementId(e)) != b.degree(ElementId(e))) return false;
-  }
-  return std::ranges::equal(a.frames(), b.frames());
 }
 
 std::shared_ptr<const Space> broken(const std::shared_ptr<const Space>& space) {
@@ -304,8 +292,14 @@ Field TransferOperator::apply_adjoint(const Field& g, int threads) const {
   return Field(g.name(), space, std::move(out), g.components());
 }
 
+void TransferOperator::write_matrix_market(AtomicFile& file) const {
+  detail::write_matrix_market(file, impl_->rows, *impl_->donor, *impl_->target);
+}
+
 void TransferOperator::write_matrix_market(const std::string& path) const {
-  detail::write_matrix_market(path, impl_->rows, *impl_->donor, *impl_->target);
+  AtomicFile file(path);
+  write_matrix_market(file);
+  file.commit();
 }
 
 }  // namespace bezel

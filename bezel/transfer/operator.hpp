@@ -10,6 +10,8 @@
 
 namespace bezel {
 
+class AtomicFile;
+
 /// The transfer from one donor space to a target mesh, kept as one dense block per pair of elements
 /// that overlap: block (T, D) takes the donor's Bernstein coefficients on D to their share of the
 /// target's on T. Immutable; may be applied from several threads at once.
@@ -67,6 +69,8 @@ class TransferOperator {
   /// round-trip.
   /// @throws InputError when the file cannot be written
   void write_matrix_market(const std::string& path) const;
+  /// The same into a file that the caller commits.
+  void write_matrix_market(AtomicFile& file) const;
 
  private:
   struct Impl;

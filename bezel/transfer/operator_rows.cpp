@@ -122,9 +122,8 @@ void OperatorRows::row(std::int32_t t, Row& out) const {
   fill_row(index / chunk_size, index % chunk_size, out);
 }
 
-void write_matrix_market(const std::string& path, const OperatorRows& rows, const Space& donor,
+void write_matrix_market(AtomicFile& file, const OperatorRows& rows, const Space& donor,
                          const Space& target) {
-  AtomicFile file(path);
   std::size_t entries = 0;
   for (std::size_t chunk = 0; chunk < rows.chunk_count(); ++chunk) {
     rows.for_rows(chunk, [&](const OperatorRows::Row& row) {
@@ -161,7 +160,6 @@ void write_matrix_market(const std::string& path, const OperatorRows& rows, cons
     }
     file.write(text);
   }
-  file.commit();
 }
 
 }  // namespace bezel::detail

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bezel/base/atomic_file.hpp"
 #include "bezel/field/space.hpp"
 #include "bezel/transfer/element_transfer.hpp"
 
@@ -91,7 +92,7 @@ class OperatorRows {
 };
 
 /// See TransferOperator::write_matrix_market().
-void write_matrix_market(const std::string& path, const OperatorRows& rows, const Space& donor,
+void write_matrix_market(AtomicFile& file, const OperatorRows& rows, const Space& donor,
                          const Space& target);
 
 }  // namespace bezel::detail
