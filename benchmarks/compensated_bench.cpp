@@ -209,10 +209,20 @@ BENCHMARK(peak_rate)->Name("peak");
 void plain(benchmark::State& state) {
   const double n = static_cast<double>(state.range(0));
   measure(
-      state, [](const Doubles& b, const Doubles& s, Doubles& out) { evaluate(b, s, out); }, points,
-      1.5 * n * (n + 1) + 1);
+      state,
+      [](const Doubles& b, const Doubles& s, Doubles& out) { evaluate_compensated(b, s, out, 1); },
+      points, 1.5 * n * (n + 1) + 1);
 }
 BENCHMARK(plain)->Name("bezel/plain")->Apply(degrees);
+
+/// By Horner's scheme.
+void horner(benchmark::State& state) {
+  const double n = static_cast<double>(state.range(0));
+  measure(
+      state, [](const Doubles& b, const Doubles& s, Doubles& out) { evaluate(b, s, out); }, points,
+      4 * n);
+}
+BENCHMARK(horner)->Name("bezel/evaluate")->Apply(degrees);
 
 template <int K>
 void compensated(benchmark::State& state) {

@@ -192,14 +192,9 @@ void evaluate(benchmark::State& state, const Run& run) {
 void evaluate_bezel(benchmark::State& state) {
   evaluate(state, [](benchmark::State& loop, const std::vector<Vec2>& c,
                      const std::vector<double>& s, std::vector<Vec2>& out) {
-    std::vector<double> x, y, px(s.size()), py(s.size());
-    for (const Vec2& p : c) {
-      x.push_back(p.x());
-      y.push_back(p.y());
-    }
+    std::vector<double> px(s.size()), py(s.size());
     for (auto _ : loop) {
-      bezel::bernstein::evaluate(x, s, px);
-      bezel::bernstein::evaluate(y, s, py);
+      bezel::bernstein::evaluate(c, s, px, py);
       benchmark::DoNotOptimize(px.data());
       benchmark::DoNotOptimize(py.data());
       benchmark::ClobberMemory();

@@ -19,15 +19,16 @@ namespace {
 struct IntersectCommand {
   std::string file, out;
   double coincidence_distance = 0.0;
-  bool hex = false;
+  bool difference = false, hex = false;
   CurveDrawOptions draw;
 };
 
 IntersectReport report_on(const Shapes& input, const std::string& file,
                           const IntersectCommand& options, const Context& context) {
   ProgressBar bar(context, "intersect");
-  const ReportOptions how{file, options.coincidence_distance, options.hex, context.threads,
-                          bar.callback()};
+  const ReportOptions how{
+      file,          options.coincidence_distance, options.difference, options.hex, context.threads,
+      bar.callback()};
   return input.shapes[0].triangle ? report_triangles(input, how) : report_curves(input, how);
 }
 
@@ -42,6 +43,9 @@ int run(const IntersectCommand& options, const Context& context) {
   }
   const InputText text = read_input_text(options.file);
   const Shapes input = read_shapes(text.name, text.text);
+  if (options.difference && !input.shapes[0].triangle)
+    throw InputError(InputPlace{text.name, 0, "", -1},
+                     "found curves, expected triangles for --difference");
   if (input.rounded > 0)
     note(context, fmt::format("{}: {} rounded to the nearest double", text.name,
                               counted(input.rounded, "rational number")));
@@ -51,6 +55,7 @@ int run(const IntersectCommand& options, const Context& context) {
       {"schema", "bezel/intersect/1"},
       {"file", options.file},
       {"output", options.out.empty() ? Json() : Json(options.out)},
+      {"operation", options.difference ? "difference" : "intersection"},
       {"coincidence_distance", number_json(options.coincidence_distance, options.hex)},
       {"unresolved_count", report.unresolved},
       {"results", report.results}};
@@ -102,6 +107,8 @@ void add_intersect(CLI::App& app, Context& context) {
                    "0: exact)")
       ->type_name("D")
       ->capture_default_str();
+  command->add_flag("--difference", o.difference,
+                    "What the second triangle of a pair leaves of the first");
   command->add_option("-o,--output", o.out, "Picture to write: .svg or .png")->type_name("FILE");
   command->add_option("--width", o.draw.width, "Width of the picture in pixels")
       ->check(CLI::Range(64, 16384))

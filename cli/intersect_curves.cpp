@@ -42,7 +42,8 @@ class Writer {
     for (const Tangency& t : found.tangencies)
       out["tangencies"].push_back({{"s", number(t.s)},
                                    {"t", number(t.t)},
-                                   {"order", t.order > 0 ? Json(t.order) : Json()}});
+                                   {"order", t.order > 0 ? Json(t.order) : Json()},
+                                   {"sign", t.sign}});
     for (const Overlap& o : found.overlaps)
       out["overlaps"].push_back({{"s", box(o.s0, o.s1)},
                                  {"t", box(o.t0, o.t1)},
@@ -69,7 +70,9 @@ class Writer {
                       c.sign == 0 ? "unknown" : fmt::format("{:+d}", c.sign)));
     for (const Tangency& t : found.tangencies)
       row("tangency", text(t.s), text(t.t), a(t.s), "",
-          t.order > 0 ? fmt::format("order {}", t.order) : "order not proven");
+          t.order == 0  ? "order not proven"
+          : t.sign == 0 ? fmt::format("order {}", t.order)
+                        : fmt::format("order {}, sign {:+d}", t.order, t.sign));
     for (const Overlap& o : found.overlaps)
       row("overlap", interval(o.s0, o.s1), interval(o.t0, o.t1), {}, "",
           fmt::format("{} direction{}, gap {}", direction(o), o.t0 < o.t1 ? "" : "s",

@@ -19,6 +19,7 @@ namespace bezel::cli {
 struct ReportOptions {
   std::string file;  ///< for messages
   double coincidence_distance = 0.0;
+  bool difference = false;  ///< of triangles: what the second leaves of the first
   bool hex = false;
   int threads = 0;
   Progress progress;

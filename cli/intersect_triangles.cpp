@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <type_traits>
 
 #include "bezel/base/error.hpp"
 #include "bezel/geometry/triangle.hpp"
@@ -40,9 +41,17 @@ const char* word(TriangleRelation relation) {
   return "";
 }
 
-double total_area(const TriangleIntersections& found) {
+const std::vector<CurvedPolygon>& regions(const TriangleIntersections& found) {
+  return found.polygons;
+}
+const std::vector<CurvedPolygon>& regions(const TriangleDifference& found) {
+  return found.loops;
+}
+
+template <class Found>
+double total_area(const Found& found) {
   double sum = 0.0;
-  for (const CurvedPolygon& polygon : found.polygons) sum += area(polygon);
+  for (const CurvedPolygon& polygon : regions(found)) sum += area(polygon);
   return sum;
 }
 
@@ -71,20 +80,35 @@ Json polygon_json(const CurvedPolygon& polygon, bool hex) {
   return {{"area", number_json(area(polygon), hex)}, {"vertices", vertices}, {"edges", edges}};
 }
 
-Json to_json(const TriangleIntersections& found, bool hex) {
+template <class Found>
+Json to_json(const Found& found, bool hex) {
+  const char* list = std::is_same_v<Found, TriangleDifference> ? "loops" : "polygons";
   const bool unresolved = found.relation == TriangleRelation::unresolved;
   Json out{{"relation", word(found.relation)},
            {"area", unresolved ? Json() : number_json(total_area(found), hex)},
-           {"polygons", Json::array()},
+           {list, Json::array()},
            {"unresolved", Json::array()}};
-  for (const CurvedPolygon& polygon : found.polygons)
-    out["polygons"].push_back(polygon_json(polygon, hex));
+  for (const CurvedPolygon& polygon : regions(found))
+    out[list].push_back(polygon_json(polygon, hex));
   if (unresolved)
     out["unresolved"].push_back(
         {{"reason", found.reason},
          {"box",
           {{"min", point_json(found.box.lo, hex)}, {"max", point_json(found.box.hi, hex)}}}});
   return out;
+}
+
+template <class Found>
+std::string unresolved_sentence(const Found& found) {
+  return fmt::format("unresolved: {}, within [{:.6g}, {:.6g}] x [{:.6g}, {:.6g}]", found.reason,
+                     found.box.lo.x(), found.box.hi.x(), found.box.lo.y(), found.box.hi.y());
+}
+
+std::string sentence(const TriangleDifference& found, const std::string&, const std::string&) {
+  if (found.relation == TriangleRelation::unresolved) return unresolved_sentence(found);
+  if (found.loops.empty()) return "nothing remains";
+  return fmt::format("{}, area {:.10g}", summary({{found.loops.size(), "loop"}}, ""),
+                     total_area(found));
 }
 
 std::string sentence(const TriangleIntersections& found, const std::string& a,
@@ -106,18 +130,17 @@ std::string sentence(const TriangleIntersections& found, const std::string& a,
     case TriangleRelation::same:
       return with_area("the same boundary");
     case TriangleRelation::unresolved:
-      return fmt::format("unresolved: {}, within [{:.6g}, {:.6g}] x [{:.6g}, {:.6g}]", found.reason,
-                         found.box.lo.x(), found.box.hi.x(), found.box.lo.y(), found.box.hi.y());
+      return unresolved_sentence(found);
   }
   return {};
 }
 
 /// One row for each edge, with the vertex where it begins; vertices have the picture's numbers.
-std::string table(const TriangleIntersections& found, const std::string& a, const std::string& b,
-                  bool hex, int next) {
+std::string table(const std::vector<CurvedPolygon>& polygons, const std::string& a,
+                  const std::string& b, bool hex, int next) {
   std::vector<std::vector<std::string>> rows;
-  for (std::size_t k = 0; k < found.polygons.size(); ++k) {
-    const CurvedPolygon& polygon = found.polygons[k];
+  for (std::size_t k = 0; k < polygons.size(); ++k) {
+    const CurvedPolygon& polygon = polygons[k];
     for (std::size_t i = 0; i < polygon.size(); ++i) {
       const CurvedEdge& edge = polygon.edges()[i];
       const Vec2 p = polygon.control(i)[0];
@@ -148,19 +171,15 @@ std::string name_in_pair(const Shapes& input, std::size_t i, const char* letter)
   return input.in_pairs && shape.name == shape.place ? letter : shape.name;
 }
 
-}  // namespace
-
-IntersectReport report_triangles(const Shapes& input, const ReportOptions& options) {
-  check_shapes(input, options.file);
-  const TriangleIntersectOptions how{options.coincidence_distance};
-  const auto found =
-      meet_pairs<TriangleIntersections>(input, options, [&](const Shape& a, const Shape& b) {
-        return intersect(a.degree, a.control, b.degree, b.control, how);
-      });
+/// meet(triangle, triangle) of every pair.
+template <class Found, class Meet>
+IntersectReport report(const Shapes& input, const ReportOptions& options, const Meet& meet) {
+  const auto found = meet_pairs<Found>(input, options, meet);
+  constexpr bool remainder = std::is_same_v<Found, TriangleDifference>;
   IntersectReport out;
   for (const Shape& shape : input.shapes)
     out.picture.shapes.push_back(drawn_triangle(shape.name, shape.degree, shape.control));
-  out.picture.region_name = "common part";
+  out.picture.region_name = remainder ? "what remains" : "common part";
   int next = 1;
   bool any = false;
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -170,11 +189,14 @@ IntersectReport report_triangles(const Shapes& input, const ReportOptions& optio
     if (!input.in_pairs) result.update({{"a", first}, {"b", second}});
     result.update(to_json(found[i], options.hex));
     out.results.push_back(std::move(result));
-    const std::string rows = table(found[i], a, b, options.hex, next);
-    any = any || !found[i].polygons.empty();
-    out.text += fmt::format("{}{}: {}\n{}", i > 0 ? "\n" : "", pair_name(input, i),
-                            sentence(found[i], a, b), rows);
-    next = add_polygons(out.picture, found[i].polygons, next);
+    const std::vector<CurvedPolygon>& parts = regions(found[i]);
+    const std::string rows = table(parts, a, b, options.hex, next);
+    any = any || !parts.empty();
+    out.text +=
+        fmt::format("{}{}: {}\n{}", i > 0 ? "\n" : "",
+                    remainder && !input.in_pairs ? a + " without " + b : pair_name(input, i),
+                    sentence(found[i], a, b), rows);
+    next = remainder ? add_loops(out.picture, parts, next) : add_polygons(out.picture, parts, next);
     if (found[i].relation == TriangleRelation::unresolved) {
       ++out.unresolved;
       out.picture.marks.push_back(
@@ -183,6 +205,20 @@ IntersectReport report_triangles(const Shapes& input, const ReportOptions& optio
   }
   if (any) out.text = units + out.text;
   return out;
+}
+
+}  // namespace
+
+IntersectReport report_triangles(const Shapes& input, const ReportOptions& options) {
+  check_shapes(input, options.file);
+  const TriangleIntersectOptions how{options.coincidence_distance};
+  if (options.difference)
+    return report<TriangleDifference>(input, options, [&](const Shape& a, const Shape& b) {
+      return difference(a.degree, a.control, b.degree, b.control, how);
+    });
+  return report<TriangleIntersections>(input, options, [&](const Shape& a, const Shape& b) {
+    return intersect(a.degree, a.control, b.degree, b.control, how);
+  });
 }
 
 }  // namespace bezel::cli

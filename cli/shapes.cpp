@@ -190,7 +190,7 @@ class Reader {
                  : fmt::format("found {} control points, expected {} to {} (degree {} to {})", n,
                                size(least), size(most), least, most));
     }
-    check_extent(shape.control, item, where);
+    if (shape.triangle) check_extent(shape.control, item, where);
     if (const JsonValue* name = item.find("name")) {
       if (name->kind != Kind::string)
         fail(*name, where, fmt::format("name: found {}, expected a string", described(*name)));
@@ -199,7 +199,7 @@ class Reader {
     out_.shapes.push_back(std::move(shape));
   }
 
-  /// What the library asks for: products of differences must neither overflow nor vanish.
+  /// What the library asks of triangles: products of differences must neither overflow nor vanish.
   void check_extent(const std::vector<Vec2>& control, const JsonValue& item,
                     const std::string& where) const {
     Box2 box;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bezel/bernstein/casteljau_batch.hpp"
 #include "bezel/bernstein/certified.hpp"
 #include "bezel/bernstein/checks.hpp"
 #include "bezel/bernstein/compensated_batch.hpp"
@@ -150,7 +151,7 @@ void evaluate_compensated(std::span<const double> b, std::span<const double> s,
   check_precision(K);
   checks::size(out.size(), s.size(), "places for values");
   if (K == 1) {
-    evaluate(b, s, out);
+    casteljau_points(d, b.data(), s.data(), s.size(), out.data());
   } else if (!compensated_points(d, b.data(), s.data(), s.size(), K, out.data())) {
     for (std::size_t q = 0; q < s.size(); ++q) out[q] = value_of(d, b.data(), s[q], K);
   }

@@ -45,6 +45,23 @@ Value evaluate_unchecked(int d, const Value* b, const Scalar& s) {
   return run(w.data());
 }
 
+/// Scaled coefficients up to this size cannot make the sums below overflow at parameters in [0, 1].
+inline constexpr double largest_scaled = 0x1p1000;
+
+/// sum_i c_i r^(d-i) s^i, d >= 1, c_i `stride` apart: Horner's scheme in r with growing powers of
+/// s, without checks.
+template <int stride = 1, class Value, class Scalar>
+Value evaluate_scaled(int d, const Value* c, const Scalar& r, const Scalar& s) {
+  Scalar power = s;
+  Value a(r * c[0]);
+  for (int i = 1; i < d; ++i) {
+    c += stride;
+    a = Value(r * Value(a + Value(power * c[0])));
+    power = Scalar(power * s);
+  }
+  return Value(a + Value(power * c[stride]));
+}
+
 template <class Value>
 struct ValueAndDerivative {
   Value value, derivative;

@@ -36,9 +36,16 @@ Value evaluate(int d, std::span<const Value> b, const Lambda& lambda);
 template <class Value>
 ValueAndGradient<Value> evaluate_gradient(int d, std::span<const Value> b, const Lambda& lambda);
 
-/// Many points, structure of arrays: out[q] = p at lambda = ((1-u)-v, u, v); the bits of the scalar
-/// evaluate, on every SIMD target.
+/// Many points, structure of arrays: out[q] = p at lambda = ((1-u)-v, u, v), by Horner's scheme as
+/// on the interval. The last bits may differ from those of the scalar evaluate; they do not depend
+/// on the SIMD target, nor on the other points.
+///
 /// @throws    also InputError when the sizes of u, v and out differ
+/// @accuracy  as evaluate; 0.25 of the bound seen
+/// @cost      1.5 (d+1)(d+2) vector operations for 2 to 8 points, no allocation: 0.7, 0.9 and
+///            4.5 ns a point at d = 2, 3 and 10 (AVX-512). With |b| d!/(i!j!k!) above 2^1000, one
+///            by one
+/// @source    docs/methods/bernstein.md
 void evaluate(int d, std::span<const double> b, std::span<const double> u,
               std::span<const double> v, std::span<double> out);
 

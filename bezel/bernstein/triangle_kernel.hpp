@@ -58,6 +58,19 @@ Value evaluate_unchecked(int d, const Value* b, const std::array<Scalar, 3>& lam
   });
 }
 
+/// p(lambda) from the scaled coefficients d!/(i!j!k!) b_ijk, without checks: Horner's scheme in l2,
+/// with rows of equal k by Horner's scheme in l0 with growing powers of l1.
+template <class Value, class Scalar>
+Value evaluate_scaled_triangle(int d, const Value* c, const std::array<Scalar, 3>& lambda) {
+  c += triangle_size(d) - 1;
+  Value p = *c;
+  for (int n = 1; n <= d; ++n) {
+    c -= n + 1;
+    p = Value(Value(lambda[2] * p) + evaluate_scaled(n, c, lambda[0], lambda[1]));
+  }
+  return p;
+}
+
 /// p(lambda) and its derivatives from one de Casteljau sweep, without checks.
 template <class Value, class Scalar>
 ValueAndGradient<Value> evaluate_gradient_unchecked(int d, const Value* b,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "bezel/geometry/curve_check.hpp"
@@ -50,6 +51,34 @@ double length_of(const IntervalRule& rule, int degree, const Vec2* b, double tol
          length_of(rule, degree, right, tolerance, depth - 1);
 }
 
+/// The range of slopes, from the derivative's control points on [-1/4, 5/4].
+void measure_turn(CurveCache& cache, int degree) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (degree <= 1) {
+    cache.slope_lo = cache.chord_length > 0 ? 0.0 : -infinity;
+    cache.slope_hi = cache.chord_length > 0 ? 0.0 : infinity;
+    return;
+  }
+  geometry_kernel::PointBuffer<geometry_kernel::max_curve_points> differences, extended;
+  Vec2 *h = differences.data(), *e = extended.data();
+  for (int i = 0; i < degree; ++i)
+    h[i] =
+        cache.control[static_cast<std::size_t>(i) + 1] - cache.control[static_cast<std::size_t>(i)];
+  geometry_kernel::restrict_curve(degree - 1, h, -0.25, 1.25, e);
+  cache.slope_lo = infinity;
+  cache.slope_hi = -infinity;
+  for (int i = 0; i < degree; ++i) {
+    const double along = dot(cache.chord, e[i]), across = cross(cache.chord, e[i]);
+    if (!(along > 0)) {
+      cache.slope_lo = -infinity;
+      cache.slope_hi = infinity;
+      return;
+    }
+    cache.slope_lo = std::min(cache.slope_lo, across / along);
+    cache.slope_hi = std::max(cache.slope_hi, across / along);
+  }
+}
+
 }  // namespace
 
 double Curve::length() const {
@@ -74,6 +103,8 @@ CurveCache cache_curve(std::span<const Vec2> control) {
     cache.band_lo = std::min(cache.band_lo, c);
     cache.band_hi = std::max(cache.band_hi, c);
   }
+  cache.diameter = cache.box.diameter();
+  measure_turn(cache, d);
   return cache;
 }
 

@@ -55,6 +55,8 @@ struct Tangency {
   int order;  ///< order of contact, the multiplicity of the common point: 2 touching, 3 osculating
               ///< and crossing (odd orders cross, even ones do not), ...; proven. With a
               ///< coincidence distance 0: unknown
+  int sign = 0;  ///< of odd orders, as that of a Crossing: +1 when b passes from right to left of a
+                 ///< as t increases, -1 the other way; proven. 0 for even and unknown orders
 };
 /// The curves coincide on matching intervals: exactly, or within the coincidence distance.
 struct Overlap {
@@ -126,6 +128,10 @@ struct CurveCache {
   double chord_length;      ///< its length
   double band_lo, band_hi;  ///< range of cross(chord, c_i - c_0) over the control points
   double magnitude;         ///< largest |coordinate|
+  double diameter;          ///< of the box
+  /// Range of the tangent of the angle from the chord to the derivative, for parameters from -1/4
+  /// to 5/4; infinite where it reaches 90 degrees or the chord is a point.
+  double slope_lo, slope_hi;
 };
 /// @throws   InputError when there are no control points, more than 61, or one is not finite
 CurveCache cache_curve(std::span<const Vec2> control);

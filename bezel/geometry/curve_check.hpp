@@ -7,6 +7,7 @@
 #include <string>
 
 #include "bezel/base/error.hpp"
+#include "bezel/geometry/curve.hpp"
 #include "bezel/geometry/curve_kernel.hpp"
 
 namespace bezel::geometry_kernel {
@@ -21,6 +22,15 @@ inline int checked_degree(std::span<const Vec2> curve) {
     if (!std::isfinite(curve[i].x()) || !std::isfinite(curve[i].y()))
       throw InputError("control point " + std::to_string(i) + " of the curve is not finite");
   return static_cast<int>(curve.size()) - 1;
+}
+
+/// All that an intersection without a distance wants of a curve: its box, of unchecked points.
+inline CurveCache box_cache(std::span<const Vec2> control) {
+  CurveCache cache{};
+  cache.control = control;
+  cache.box = control_box(static_cast<int>(control.size()) - 1, control.data());
+  cache.magnitude = largest_coordinate(cache.box);
+  return cache;
 }
 
 inline void check_parameter(double s) {

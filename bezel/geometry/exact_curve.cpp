@@ -178,7 +178,10 @@ ContactOrder contact_order(const ExactContact& contact, int axis, int limit, dou
       break;
     }
   }
-  if (order == 0) return {0, 0.0};
+  if (order == 0) return {0, 0.0, 0};
+  // a[y] - b[y] = delta mu^order: with x to the right, a rises above b, which goes to the right
+  // when beta > 0.
+  const int sign = order % 2 == 0 ? 0 : delta.sign() * beta.sign() * (axis == 0 ? -1 : 1);
 
   // In doubles, in units of h and relative to |beta|: what stays of a - b beyond the order, with
   // all cancellation done exactly.
@@ -234,9 +237,10 @@ ContactOrder contact_order(const ExactContact& contact, int axis, int limit, dou
     // |a[x] - b[x]| <= off h^(r+1), so b's parameter is off by w <= off h^(r+1) / speed.
     const double w = off_power / speed * up;
     if (!(sum(tau, h, 0) + w <= t)) continue;
-    if (leading > h * (sum(rest[y], h, r + 1) + along_y * up * off / speed) * up) return {order, h};
+    if (leading > h * (sum(rest[y], h, r + 1) + along_y * up * off / speed) * up)
+      return {order, h, sign};
   }
-  return {order, 0.0};
+  return {order, 0.0, sign};
 }
 
 std::optional<bool> common_root(Polynomial f, Polynomial g, const Dyadic& lo, const Dyadic& hi) {

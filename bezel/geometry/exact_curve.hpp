@@ -65,6 +65,8 @@ struct ContactOrder {
   int order;        ///< of a - b in h when b is taken opposite a; 0: not found within the limit
   double s_radius;  ///< no other common point with |s - contact.s| <= s_radius and b's parameter in
                     ///< a range where b[axis] is monotone; 0 when none was found
+  int sign;  ///< odd orders: as of cross(a', b') where that is not 0, else 0: 1 when b passes
+             ///< from right to left of a, or a from left to right of b
 };
 /// @param limit  orders above are not looked for
 /// @param start  s_radius is at most this

@@ -31,14 +31,9 @@ bool outside_fat_line(const CurveCache& curve, const CurveCache& other, double m
   return true;
 }
 
-/// All that the exact method wants of a curve.
-CurveCache cache_box(std::span<const Vec2> control) {
-  CurveCache cache{};
-  const int d = geometry_kernel::checked_degree(control);
-  cache.control = control;
-  cache.box = geometry_kernel::control_box(d, control.data());
-  cache.magnitude = geometry_kernel::largest_coordinate(cache.box);
-  return cache;
+CurveCache checked_box_cache(std::span<const Vec2> control) {
+  geometry_kernel::checked_degree(control);
+  return geometry_kernel::box_cache(control);
 }
 
 /// With a distance, of curves whose products would overflow or vanish: scaled by a power of two.
@@ -95,7 +90,7 @@ void intersect(const CurveCache& a, const CurveCache& b, const IntersectOptions&
 void intersect(std::span<const Vec2> a, std::span<const Vec2> b, const IntersectOptions& options,
                CurveIntersections& out) {
   if (options.coincidence_distance == 0.0)
-    intersect(cache_box(a), cache_box(b), options, out);
+    intersect(checked_box_cache(a), checked_box_cache(b), options, out);
   else
     intersect(cache_curve(a), cache_curve(b), options, out);
 }

@@ -479,7 +479,7 @@ class Search {
     for (std::size_t i = known_; i < resolution_.roots.size(); ++i) {
       const ResolvedRoot& root = resolution_.roots[i];
       if (root.order != 1 && !root.s_end && !root.t_end)
-        out_.tangencies.push_back({root.s, root.t, root.order});
+        out_.tangencies.push_back({root.s, root.t, root.order, root.contact_sign});
       else
         out_.crossings.push_back(crossing(root));
     }

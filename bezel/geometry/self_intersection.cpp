@@ -507,7 +507,7 @@ class SelfSearch {
       };
       for (const Tangency& c : found.tangencies)
         if (here(s_of(c.s), t_of(c.t))) {
-          out_.pairs.tangencies.push_back({s_of(c.s), t_of(c.t), c.order});
+          out_.pairs.tangencies.push_back({s_of(c.s), t_of(c.t), c.order, c.sign});
           any = true;
         }
       for (const Crossing& c : found.crossings) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "bezel/bernstein/index.hpp"
+#include "bezel/geometry/curve_check.hpp"
 #include "bezel/geometry/curve_incidence.hpp"
 #include "bezel/geometry/curve_kernel.hpp"
 
@@ -120,7 +121,7 @@ Box2 part_box(const CurveCache& side, double s0, double s1) {
 
 }  // namespace
 
-void TriangleSides::assign(int g, std::span<const Vec2> control) {
+void TriangleSides::assign(int g, std::span<const Vec2> control, bool with_distance) {
   const auto n = at(g + 1);
   points_.resize(3 * n);
   box_ = Box2();
@@ -128,7 +129,8 @@ void TriangleSides::assign(int g, std::span<const Vec2> control) {
     const std::size_t first = at(side) * n;
     for (int m = 0; m <= g; ++m)
       points_[first + at(m)] = control[at(bernstein::triangle_side_index(g, side, m))];
-    cache_[at(side)] = cache_curve(std::span<const Vec2>(points_).subspan(first, n));
+    const auto points = std::span<const Vec2>(points_).subspan(first, n);
+    cache_[at(side)] = with_distance ? cache_curve(points) : box_cache(points);
     box_.include(cache_[at(side)].box);
   }
 }

@@ -20,7 +20,9 @@ class TriangleSides {
   TriangleSides() = default;
   TriangleSides(const TriangleSides&) = delete;
   TriangleSides& operator=(const TriangleSides&) = delete;
-  void assign(int g, std::span<const Vec2> control);  ///< arguments checked by the caller
+  /// @param control         checked by the caller
+  /// @param with_distance   the sides will be met within a coincidence distance
+  void assign(int g, std::span<const Vec2> control, bool with_distance = false);
   std::span<const Vec2> control(int side) const { return cache_[at(side)].control; }
   const CurveCache& cache(int side) const { return cache_[at(side)]; }
   const Vec2& corner(int k) const { return control(k).front(); }

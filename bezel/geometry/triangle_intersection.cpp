@@ -90,14 +90,26 @@ struct Both {
       box = box_of(valid_a ? pb : pa);
       return TriangleRelation::unresolved;
     }
-    a.assign(g, pa);
-    b.assign(h, pb);
+    a.assign(g, pa, distance > 0.0);
+    b.assign(h, pb, distance > 0.0);
     if (!arrangement.build(a, b, distance)) {
       reason = arrangement.reason();
       box = arrangement.where();
       return TriangleRelation::unresolved;
     }
     return relation_of();
+  }
+
+  /// Joins the parts to loops; `found` is unresolved when they do not close.
+  template <class Found>
+  void join(Operation operation, bool cut_where_touching, std::span<const Vec2> first,
+            std::vector<CurvedPolygon>& loops, Found& found) {
+    if (assembly.run(arrangement, operation, cut_where_touching, spare, loops)) return;
+    loops.clear();
+    found.relation = TriangleRelation::unresolved;
+    found.reason =
+        "the parts of the boundaries do not close: the curves' common points contradict each other";
+    found.box = box_of(first);
   }
 
   TriangleRelation relation_of() const {
@@ -122,9 +134,6 @@ struct Both {
   }
 };
 
-constexpr const char* open_loops =
-    "the parts of the boundaries do not close: the curves' common points contradict each other";
-
 }  // namespace
 
 struct TriangleIntersector::Work : Both {};
@@ -145,13 +154,7 @@ void TriangleIntersector::intersect(int g, std::span<const Vec2> a, int h, std::
   out.relation = work.relate(g, a, h, b, options_, out.reason, out.box);
   switch (out.relation) {
     case TriangleRelation::overlapping:
-      if (work.assembly.run(work.arrangement, Operation::intersection, options_.cut_where_touching,
-                            work.spare, out.polygons))
-        return;
-      out.polygons.clear();
-      out.relation = TriangleRelation::unresolved;
-      out.reason = open_loops;
-      out.box = box_of(a);
+      work.join(Operation::intersection, options_.cut_where_touching, a, out.polygons, out);
       return;
     case TriangleRelation::first_in_second:
     case TriangleRelation::same:
@@ -192,12 +195,8 @@ TriangleDifference difference(int g, std::span<const Vec2> a, int h, std::span<c
       if (!joined) {
         work.assembly.whole(work.a, 0, false, work.spare, out.loops);
         work.assembly.whole(work.b, 1, true, work.spare, out.loops);
-      } else if (!work.assembly.run(work.arrangement, Operation::difference, false, work.spare,
-                                    out.loops)) {
-        out.loops.clear();
-        out.relation = TriangleRelation::unresolved;
-        out.reason = open_loops;
-        out.box = box_of(a);
+      } else {
+        work.join(Operation::difference, false, a, out.loops, out);
       }
       break;
     case TriangleRelation::first_in_second:

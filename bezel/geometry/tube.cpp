@@ -390,6 +390,7 @@ void TubeSearch::emit(ResolvedRoot root) {
     std::swap(root.s_hi, root.t_hi);
     std::swap(root.s_end, root.t_end);
     root.sign = -root.sign;
+    root.contact_sign = -root.contact_sign;
   }
   out_.add(root);
 }

@@ -24,6 +24,7 @@ struct ResolvedRoot {
   double turn;        ///< |cross(a', b')|, of the scaled curves
   bool s_end, t_end;  ///< s or t is exactly 0 or 1
   bool rough;         ///< s and t are from the first stage
+  int contact_sign = 0;  ///< of an odd order above 1: which way they cross, as `sign`
 };
 
 struct Undecided {

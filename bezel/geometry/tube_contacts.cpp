@@ -63,6 +63,11 @@ bool TubeSearch::try_straight(const Node& node, const Dyadic& s_lo, const Dyadic
     root.s = to_double(*s);
     root.t = t.to_double();
     root.order = static_cast<int>(order);
+    if (order % 2 != 0) {  // a passes to the left of the line's direction, which b goes or comes
+      const auto x = static_cast<std::size_t>(axis_);
+      const Dyadic forward = b_(Dyadic(t1_))[x] - b_(Dyadic(t0_))[x];
+      root.contact_sign = -height[order].sign() * forward.sign() * along[x].sign();
+    }
     root.s_end = s->num.sign() == 0 || compare(*s, {1.0}) == 0;
     root.s_lo = std::max(s0_, root.s - radius);
     root.s_hi = std::min(s1_, root.s + radius);
@@ -92,6 +97,7 @@ bool TubeSearch::try_contact(const Node& node, const Dyadic& s_lo, const Dyadic&
   const int limit = std::min(most_order, a_.degree() * b_.degree());
   const ContactOrder order = contact_order(*contact, axis_, certified ? 1 : limit, 0.25);
   root.order = order.order;
+  if (order.order > 1) root.contact_sign = order.sign;
   if (order.order == 1) {
     const Dyadic turn = contact->a[0][1] * contact->b[1][1] - contact->a[1][1] * contact->b[0][1];
     root.sign = turn.sign();

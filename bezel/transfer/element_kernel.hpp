@@ -9,6 +9,10 @@ namespace bezel::detail {
 /// Extra degree of exactness where an integrand is not a polynomial (a map inverted along a curve).
 inline constexpr int inexact_extra = 4;
 
+/// Joints open by more than this fraction of the smaller element mean that the overlay is wrong
+/// there.
+inline constexpr double largest_joint_gap = 1e-10;
+
 /// A point of an element and the derivatives of its map.
 struct MapPoint {
   Vec2 x, du, dv;

@@ -26,6 +26,37 @@ TriangleRule any_triangle_rule(int degree) {
   return rule;
 }
 
+/// x := scale (L L^T)^-1 x. N: the size when known at compile time.
+template <std::size_t N>
+void solve_in_place(std::size_t size, const double* lower, const double* inverse, double scale,
+                    double* x) {
+  const std::size_t n = N > 0 ? N : size;
+  for (std::size_t i = 0; i < n; ++i) {
+    double sum = x[i];
+    for (std::size_t k = 0; k < i; ++k) sum -= lower[i * n + k] * x[k];
+    x[i] = sum * inverse[i];
+  }
+  for (std::size_t i = n; i-- > 0;) {
+    double sum = x[i];
+    for (std::size_t k = i + 1; k < n; ++k) sum -= lower[k * n + i] * x[k];
+    x[i] = sum * inverse[i];
+  }
+  for (std::size_t i = 0; i < n; ++i) x[i] *= scale;
+}
+
+/// The target's polynomials may stay on the triangle they were computed on when the space's frame
+/// is that triangle, up to the rounding of barycentric coordinates at its place in the plane.
+bool is_same_frame(const std::array<Lambda, 3>& corners, const Frame& frame) {
+  double slope = 0.0;
+  for (const Vec2& g : frame.gradient) slope = std::max({slope, std::abs(g[0]), std::abs(g[1])});
+  const double reach = std::max(std::abs(frame.centre[0]), std::abs(frame.centre[1]));
+  double largest = 0.0;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < 3; ++i)
+      largest = std::max(largest, std::abs(corners[k][i] - (i == k ? 1.0 : 0.0)));
+  return largest <= 0x1p-51 * (2.0 + reach * slope);
+}
+
 }  // namespace
 
 const ElementTransfer::MassRule& ElementTransfer::mass_rule(int degree) {
@@ -62,7 +93,9 @@ const ElementTransfer::MassRule& ElementTransfer::mass_rule(int degree) {
   return mass_rules_.back();
 }
 
-bool ElementTransfer::cholesky(std::size_t n, std::vector<double>& lower) {
+bool ElementTransfer::cholesky(std::size_t n, Factor& factor) {
+  std::vector<double>& lower = factor.lower;
+  factor.inverse.resize(n);
   for (std::size_t j = 0; j < n; ++j) {
     for (std::size_t i = j; i < n; ++i) {
       double sum = lower[i * n + j];
@@ -70,8 +103,9 @@ bool ElementTransfer::cholesky(std::size_t n, std::vector<double>& lower) {
       if (i == j) {
         if (!(sum > 0.0)) return false;
         lower[j * n + j] = std::sqrt(sum);
+        factor.inverse[j] = 1.0 / lower[j * n + j];
       } else {
-        lower[i * n + j] = sum / lower[j * n + j];
+        lower[i * n + j] = sum * factor.inverse[j];
       }
     }
   }
@@ -86,17 +120,16 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
   if (gd == 1) {
     // A straight triangle's own barycentrics: one matrix for all, times twice the area.
     if (reference_degree_ != p) {
-      reference_lower_ = bernstein::mass_matrix(p);
-      cholesky(n, reference_lower_);
+      reference_factor_.lower = bernstein::mass_matrix(p);
+      cholesky(n, reference_factor_);
       reference_degree_ = p;
     }
     const double area = target_.element_area[static_cast<std::size_t>(t)];
-    const double scale = std::sqrt(2.0 * area);
-    f.lower.resize(n * n);
-    for (std::size_t i = 0; i < n * n; ++i) f.lower[i] = reference_lower_[i] * scale;
-    f.integrals.assign(n, area / static_cast<double>(n));
-    return f;
+    reference_factor_.scale = 0.5 / area;
+    reference_factor_.integrals.assign(n, area / static_cast<double>(n));
+    return reference_factor_;
   }
+  if (moment_factor(g, t)) return f;
   const int degree = g.target_mapped ? 2 * p + 2 * (gd - 1) : 2 * p * gd + 2 * (gd - 1);
   const MassRule& points = mass_rule(degree);
   f.lower.assign(n * n, 0.0);
@@ -123,7 +156,7 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
       for (std::size_t j = 0; j <= i; ++j) f.lower[i * n + j] += wi * phi[j];
     }
   }
-  if (!cholesky(n, f.lower)) {
+  if (!cholesky(n, f)) {
     throw NumericsError("target triangle " + std::to_string(t) +
                         ": its mass matrix is singular in double precision (degree " +
                         std::to_string(p) + " on a degenerate element)");
@@ -143,11 +176,13 @@ void ElementTransfer::finish(const Group& g, std::int32_t t, const Accumulators&
   const auto factors = multinomials(p);
   std::vector<double>& rhs = scratch_;
   std::array<Lambda, 3> to_frame{};  // the space's frame seen from the triangle computed on
-  if (g.target_space->basis() == Basis::physical) {
+  bool other_frame = g.target_space->basis() == Basis::physical;
+  if (other_frame) {
     const auto corners = g.target_space->frame(ElementId(t)).corners();
     for (std::size_t k = 0; k < 3; ++k) {
       to_frame[k] = g.target_frame[static_cast<std::size_t>(t)].lambda(corners[k]);
     }
+    other_frame = !is_same_frame(to_frame, g.target_frame[static_cast<std::size_t>(t)]);
   }
   for (std::size_t c = 0; c < nc; ++c) {
     rhs.assign(n, 0.0);
@@ -161,13 +196,18 @@ void ElementTransfer::finish(const Group& g, std::int32_t t, const Accumulators&
     }
     const double excess = (mass[c] - mean * own_area) - sum;
     for (std::size_t i = 0; i < n; ++i) rhs[i] += excess * f.integrals[i] / own_area;
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t k = 0; k < i; ++k) rhs[i] -= f.lower[i * n + k] * rhs[k];
-      rhs[i] /= f.lower[i * n + i];
-    }
-    for (std::size_t i = n; i-- > 0;) {
-      for (std::size_t k = i + 1; k < n; ++k) rhs[i] -= f.lower[k * n + i] * rhs[k];
-      rhs[i] /= f.lower[i * n + i];
+    switch (n) {
+      case 3:
+        solve_in_place<3>(n, f.lower.data(), f.inverse.data(), f.scale, rhs.data());
+        break;
+      case 6:
+        solve_in_place<6>(n, f.lower.data(), f.inverse.data(), f.scale, rhs.data());
+        break;
+      case 10:
+        solve_in_place<10>(n, f.lower.data(), f.inverse.data(), f.scale, rhs.data());
+        break;
+      default:
+        solve_in_place<0>(n, f.lower.data(), f.inverse.data(), f.scale, rhs.data());
     }
     // The constant part of what rounding left over.
     for (int sweep = 0; sweep < 2; ++sweep) {
@@ -181,7 +221,7 @@ void ElementTransfer::finish(const Group& g, std::int32_t t, const Accumulators&
       for (std::size_t i = 0; i < n; ++i) rhs[i] += missing / own_area;
     }
     for (std::size_t i = 0; i < n; ++i) rhs[i] += mean;
-    if (g.target_space->basis() == Basis::physical) {
+    if (other_frame) {
       const auto own = bernstein::specialize<double>(p, rhs, to_frame);
       std::copy(own.begin(), own.end(), rhs.begin());
     }

@@ -14,9 +14,8 @@ namespace {
 
 /// Gaps below this fraction of an element are rounding and are extended whatever the policy.
 constexpr double silent_gap = 1e-10;
-/// Joints open by more than this fraction of the smaller element mean that the overlay is wrong
-/// there.
-constexpr double largest_joint_gap = 1e-10;
+
+constexpr std::uint64_t timed_elements = 16;
 
 double signed_step(const Part& part) {
   return part.to - part.from;
@@ -32,7 +31,12 @@ ElementTransfer::ElementTransfer(const OverlayMesh& donor, const OverlayMesh& ta
       search_(search),
       groups_(groups),
       policy_(policy),
-      sums_(groups.size()) {}
+      sums_(groups.size()),
+      moment_sums_(groups.size()),
+      have_moments_(groups.size()),
+      batched_(groups.size()) {
+  for (std::size_t i = 0; i < groups.size(); ++i) batched_[i] = can_batch(groups[i]) ? 1 : 0;
+}
 
 void ElementTransfer::Accumulators::reset(std::size_t functions, std::size_t components) {
   product.assign(functions * components, 0.0);
@@ -135,35 +139,6 @@ void ElementTransfer::reference_nodes(const OverlayMesh& mesh, std::int32_t elem
       nodes_.push_back(node);
     }
   }
-}
-
-ElementTransfer::RunShape ElementTransfer::run_shape(std::span<const Segment> run) {
-  RunShape shape{};
-  ends_.clear();
-  Vec2 sum;
-  bool straight = true;
-  for (const Segment& segment : run) {
-    const bool source = segment.target.edge < 0;
-    const Part& part = source ? segment.source : segment.target;
-    const auto control = (source ? donor_ : target_).edge(part.edge);
-    const Vec2 a = curve_point(control, part.from);
-    const Vec2 b = curve_point(control, part.to);
-    ends_.push_back({a, b});
-    shape.centre += a;
-    sum += b - a;
-    straight = straight && control.size() == 2;
-  }
-  shape.centre *= 1.0 / static_cast<double>(run.size());
-  shape.gap = norm(sum);
-  double twice = 0.0;
-  if (straight) {
-    for (const auto& [a, b] : ends_) twice += cross(a - shape.centre, b - shape.centre);
-  } else {
-    boundary_nodes(run, 0);
-    for (const Node& node : nodes_) twice += cross(node.x - shape.centre, node.dx);
-  }
-  shape.area = 0.5 * twice;
-  return shape;
 }
 
 std::array<double, 2> ElementTransfer::reference_centre() const {
@@ -311,13 +286,18 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
     mass[c] = total.mass[c] + donor_mass[c] / donor_area * (area - weight);
 }
 
+void ElementTransfer::begin_moments(std::size_t i) {
+  if (have_moments_[i] != 0) return;
+  have_moments_[i] = 1;
+  moment_sums_[i].reset(sums_[i].basis.size(), static_cast<std::size_t>(groups_[i].components));
+}
+
 ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment> segments,
                                         GivenList& given, std::span<double> made,
                                         ElementBlocks* blocks) {
   ElementOutcome outcome;
   if (blocks != nullptr) blocks->reset(static_cast<std::size_t>(groups_[0].components));
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
-  const double own_size = target_.element_box[static_cast<std::size_t>(t)].diameter();
   std::size_t components = 0;
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     const Group& g = groups_[i];
@@ -325,83 +305,124 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
         static_cast<std::size_t>(bernstein::triangle_size(g.target_space->degree(ElementId(t)))),
         static_cast<std::size_t>(g.components));
     components += static_cast<std::size_t>(g.components);
+    have_moments_[i] = 0;
   }
+  const auto corners = target_.corners(t);
+  origin_ = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
   masses_.assign(components, 0.0);
-  std::vector<double>& pair_mass = pair_mass_;
-  pair_mass.assign(components, 0.0);
 
+  // The regions: shape and area do not depend on the fields.
+  regions_.clear();
+  for (std::size_t begin = 0; begin < segments.size();) {
+    std::size_t end = begin + 1;
+    while (end < segments.size() && segments[end].donor == segments[begin].donor) ++end;
+    regions_.push_back({static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end), nullptr,
+                        nullptr, false});
+    begin = end;
+  }
+  const bool batch =
+      donor_.degree == target_.degree && target_.degree <= max_batch_degree && !segments.empty();
+  if (batch) {
+    fill_batch(segments);
+    piece_shapes(target_.degree, origin_, batch_);
+  }
+  shapes_.clear();
   double total = 0.0;
   double extended = 0.0;
-  for (std::size_t begin = 0; begin < segments.size();) {
-    std::size_t end = begin;
-    while (end < segments.size() && segments[end].donor == segments[begin].donor) ++end;
-    const auto run = segments.subspan(begin, end - begin);
-    const std::int32_t d = segments[begin].donor;
-    begin = end;
-    const RunShape shape = run_shape(run);
-    const Vec2 centre = shape.centre;
-    const double area = shape.area;
-    const double open = shape.gap;
-    double smaller = own_size;
-    if (d != exterior)
-      smaller = std::min(smaller, donor_.element_box[static_cast<std::size_t>(d)].diameter());
-    outcome.max_joint_gap = std::max(outcome.max_joint_gap, open / smaller);
-    double allowed = -largest_joint_gap * own_area;
-    if (d != exterior)
-      allowed =
-          -largest_joint_gap * std::min(own_area, donor_.element_area[static_cast<std::size_t>(d)]);
-    if (open > largest_joint_gap * smaller || area < allowed) outcome.inconsistent = true;
+  const std::size_t first_given = given.mass.size();
+  for (const BatchRegion& region : regions_) {
+    const std::int32_t d = segments[region.begin].donor;
+    double area = 0.0, gap = 0.0;
+    if (batch) {
+      Vec2 open;
+      for (std::uint32_t k = region.begin; k < region.end; ++k) {
+        area += batch_.area[k];
+        open += Vec2{{batch_.step_x[k], batch_.step_y[k]}};
+      }
+      gap = norm(open);
+    } else {
+      const RunShape shape = run_shape(segments.subspan(region.begin, region.end - region.begin));
+      area = shape.area;
+      gap = shape.gap;
+    }
+    note_region(t, d, area, gap, outcome);
+    shapes_.push_back({d, area});
     total += area;
-    std::size_t c0 = 0;
     if (d == exterior) {
       outcome.uncovered_area = std::max(area, 0.0);
-      const bool silent = std::abs(area) <= silent_gap * own_area;
-      if (!(silent || policy_ == Uncovered::extend)) continue;
-      extended += area;
-      if (blocks != nullptr) {
-        extension_blocks(groups_[0], t, run, area, centre, sums_[0], *blocks);
-        continue;
-      }
-      for (std::size_t i = 0; i < groups_.size(); ++i) {
-        const auto nc = static_cast<std::size_t>(groups_[i].components);
-        const std::span<double> here(pair_mass.data() + c0, nc);
-        add_extension(groups_[i], t, run, area, centre, sums_[i], here);
-        for (std::size_t c = 0; c < nc; ++c) {
-          masses_[c0 + c] += here[c];
-          made[c0 + c] += here[c];
-        }
-        c0 += nc;
-      }
       continue;
     }
-    for (std::size_t i = 0; i < groups_.size(); ++i) {
-      const auto nc = static_cast<std::size_t>(groups_[i].components);
-      const std::span<double> here(pair_mass.data() + c0, nc);
-      add_pair(groups_[i], t, d, run, area, centre, sums_[i], here);
-      for (std::size_t c = 0; c < nc; ++c) masses_[c0 + c] += here[c];
-      c0 += nc;
-    }
-    if (blocks != nullptr) keep_pair(d, sums_[0], pair_mass, *blocks);
     outcome.covered_area += area;
     given.donor.push_back(d);
     given.area.push_back(area);
-    given.mass.insert(given.mass.end(), pair_mass.begin(), pair_mass.end());
     ++outcome.pairs;
+  }
+  given.mass.resize(first_given + static_cast<std::size_t>(outcome.pairs) * components);
+
+  std::size_t c0 = 0;
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    const Group& g = groups_[i];
+    const auto nc = static_cast<std::size_t>(g.components);
+    region_mass_.assign(regions_.size() * nc, 0.0);
+    const bool batched = batch && batched_[i] != 0 && blocks == nullptr;
+    if (batched) {
+      begin_moments(i);
+      add_batched(i, t, segments, region_mass_);
+    }
+    double* to = given.mass.data() + first_given + c0;
+    for (std::size_t k = 0; k < regions_.size(); ++k) {
+      const auto run = segments.subspan(regions_[k].begin, regions_[k].end - regions_[k].begin);
+      const std::int32_t d = shapes_[k].donor;
+      const double area = shapes_[k].area;
+      const std::span<double> here(region_mass_.data() + k * nc, nc);
+      if (d == exterior) {
+        const bool silent = std::abs(area) <= silent_gap * own_area;
+        if (!(silent || policy_ == Uncovered::extend)) continue;
+        if (i == 0) extended += area;
+        if (blocks != nullptr) {
+          extension_blocks(g, t, run, area, run_shape(run).centre, sums_[i], *blocks);
+          continue;
+        }
+        add_extension(g, t, run, area, run_shape(run).centre, sums_[i], here);
+        for (std::size_t c = 0; c < nc; ++c) made[c0 + c] += here[c];
+      } else if (!batched) {
+        const RunShape shape = run_shape(run);
+        if (blocks == nullptr && by_moments(g, t, d)) {
+          begin_moments(i);
+          add_pair_moments(g, t, d, shape, moment_sums_[i], here);
+        } else {
+          add_pair(g, t, d, run, area, shape.centre, sums_[i], here);
+        }
+      }
+      for (std::size_t c = 0; c < nc; ++c) masses_[c0 + c] += here[c];
+      if (d == exterior) continue;
+      for (std::size_t c = 0; c < nc; ++c) to[c] = here[c];
+      to += components;
+      if (blocks != nullptr) keep_pair(d, sums_[i], here, *blocks);
+    }
+    c0 += nc;
   }
   outcome.partition_residual = std::abs(total - own_area) / own_area;
   if (outcome.partition_residual > largest_joint_gap) outcome.inconsistent = true;
   const double integrated = outcome.covered_area + extended;
-  const auto start = std::chrono::steady_clock::now();
-  std::size_t c0 = 0;
+  // Reading the clock takes as long as a small solution: every so many elements are measured.
+  const bool timed = elements_++ % timed_elements == 0;
+  const auto start =
+      timed ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
+  c0 = 0;
   if (blocks != nullptr) finish_blocks(groups_[0], t, sums_[0], integrated, *blocks, outcome);
   for (std::size_t i = 0; i < groups_.size() && blocks == nullptr; ++i) {
     const auto nc = static_cast<std::size_t>(groups_[i].components);
+    if (have_moments_[i] != 0) moments_to_powers(groups_[i], t, moment_sums_[i], sums_[i]);
     finish(groups_[i], t, sums_[i], std::span(masses_).subspan(c0, nc), integrated,
            groups_[i].target_out(t), outcome);
     c0 += nc;
   }
-  outcome.solve_seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (timed) {
+    outcome.solve_seconds =
+        static_cast<double>(timed_elements) *
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
   return outcome;
 }
 

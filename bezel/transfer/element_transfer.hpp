@@ -12,6 +12,7 @@
 #include "bezel/field/field.hpp"
 #include "bezel/numeric/quadrature.hpp"
 #include "bezel/transfer/group.hpp"
+#include "bezel/transfer/moments.hpp"
 #include "bezel/transfer/overlay.hpp"
 #include "bezel/transfer/transfer.hpp"
 
@@ -24,7 +25,7 @@ struct ElementOutcome {
   double max_joint_gap = 0;
   double max_mass_defect = 0;  ///< largest over components of |mass of the result - mass received|
   std::int32_t pairs = 0;
-  double solve_seconds = 0;
+  double solve_seconds = 0;   ///< measured on every 16th element and multiplied
   bool inconsistent = false;  ///< the pieces around some T n D do not close
 };
 
@@ -70,18 +71,39 @@ class ElementTransfer {
     std::vector<double> product, basis, mass;
     void reset(std::size_t functions, std::size_t components);
   };
-  struct Factor {  // Cholesky factor of a target mass matrix and integrals of the basis functions
-    std::vector<double> lower, integrals;
+  /// Cholesky factor of a target mass matrix, up to a factor of the matrix, the inverses of its
+  /// diagonal, and integrals of the basis functions.
+  struct Factor {
+    std::vector<double> lower, inverse, integrals;
+    double scale = 1.0;
   };
 
   const IntervalRule& rule(int points);
   void boundary_nodes(std::span<const Segment> run, int degree);
   struct RunShape {
-    Vec2 centre;  // mean of the corners
+    Vec2 centre;    // mean of the corners
+    Vec2 relative;  // the same, from origin_
     double area;
     double gap;  // by how much the pieces fail to close
   };
   RunShape run_shape(std::span<const Segment> run);
+  // By moments (element_moments.cpp).
+  static bool by_moments(const Group& g, std::int32_t t, std::int32_t d);
+  const PieceTable& piece_table(int degree, int moments);
+  void add_pair_moments(const Group& g, std::int32_t t, std::int32_t d, const RunShape& shape,
+                        Accumulators& sums, std::span<double> mass);
+  static void moments_to_powers(const Group& g, std::int32_t t, const Accumulators& moments,
+                                Accumulators& sums);
+  bool moment_factor(const Group& g, std::int32_t t);
+  static bool can_batch(const Group& g);
+  static TargetPlace target_place(const Group& g, std::int32_t t);
+  void begin_moments(std::size_t group);
+  void fill_batch(std::span<const Segment> segments);
+  /// Group i on all regions. @param mass  [region][component]
+  void add_batched(std::size_t i, std::int32_t t, std::span<const Segment> segments,
+                   std::span<double> mass);
+  void note_region(std::int32_t t, std::int32_t d, double area, double gap,
+                   ElementOutcome& outcome) const;
   void flush(const Group& g, std::int32_t d, int target_degree, Accumulators& sums);
   void add_pair(const Group& g, std::int32_t t, std::int32_t d, std::span<const Segment> run,
                 double area, const Vec2& centre, Accumulators& sums, std::span<double> mass);
@@ -112,7 +134,7 @@ class ElementTransfer {
         map;  // value, d/du, d/dv of each geometry basis function, point by point
   };
   const MassRule& mass_rule(int degree);
-  static bool cholesky(std::size_t n, std::vector<double>& lower);
+  static bool cholesky(std::size_t n, Factor& factor);
   const Factor& factor(const Group& g, std::int32_t t);
   /// Makes room for `more` points in the arrays.
   void reserve_points(std::size_t more);
@@ -139,17 +161,32 @@ class ElementTransfer {
   const FrontSearch& search_;
   std::span<Group> groups_;
   Uncovered policy_;
+  std::uint64_t elements_ = 0;  // done so far
   std::vector<IntervalRule> rules_;
   std::vector<Node> nodes_;
-  std::vector<std::pair<Vec2, Vec2>> ends_;
+  Vec2 origin_;  // of the pieces' control points, on the target element
+  std::vector<Vec2> piece_control_, local_control_;
+  std::vector<int> piece_degree_;
+  std::vector<MomentPiece> moment_pieces_;
+  std::vector<std::unique_ptr<PieceTable>> tables_;
+  std::vector<double> moments_;
+  PieceBatch batch_;
+  std::vector<BatchRegion> regions_;
+  struct RegionShape {
+    std::int32_t donor;
+    double area;
+  };
+  std::vector<RegionShape> shapes_;
+  std::vector<double> region_mass_;            // of one group, [region][component]
   std::vector<double> w_, tu_, tv_, du_, dv_;  // quadrature points, the first count_ in use
   std::size_t count_ = 0;
-  std::vector<Accumulators> sums_;
-  std::vector<double> masses_, pair_mass_;
+  std::vector<Accumulators> sums_, moment_sums_;
+  std::vector<std::uint8_t> have_moments_;  // by group: for this element
+  std::vector<std::uint8_t> batched_;       // by group: goes by add_batched
+  std::vector<double> masses_;
   std::vector<double> scratch_;
   std::vector<MassRule> mass_rules_;
-  Factor factor_;
-  std::vector<double> reference_lower_;
+  Factor factor_, reference_factor_;
   int reference_degree_ = -1;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bezel/transfer/accumulate.hpp"
+#include "bezel/transfer/moments.hpp"
 
 namespace bezel::detail {
 namespace {
@@ -56,6 +57,22 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
     c0 += own;
   }
   out.resize(target_space->coefficient_count() * nc);
+  if (donor_mapped || target_mapped) return;
+  powers.assign(scaled.size(), 0.0);
+  for (std::size_t e = 0; e < elements; ++e) {
+    const int degree = donor_space->degree(ElementId(e));
+    if (degree > max_moment_degree) continue;
+    const std::vector<double>& matrix = power_matrix(degree);
+    const auto size = static_cast<std::size_t>(bernstein::triangle_size(degree));
+    const double* from = scaled.data() + donor_space->offset(ElementId(e)) * nc;
+    double* to = powers.data() + donor_space->offset(ElementId(e)) * nc;
+    for (std::size_t c = 0; c < nc; ++c) {
+      for (std::size_t n = 0; n < size; ++n) {
+        const double value = from[c * size + n];
+        for (std::size_t m = 0; m < size; ++m) to[m * nc + c] += value * matrix[n * size + m];
+      }
+    }
+  }
 }
 
 Group::Group(const OverlayMesh& donor, const OverlayMesh& target,

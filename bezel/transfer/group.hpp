@@ -37,9 +37,15 @@ struct Group {
   std::vector<double> scaled;      ///< donor coefficients times multinomials, per element
                                    ///< [component][n]; of basis functions per degree
   std::vector<double> donor_mass;  ///< per element [component]
-  std::vector<double> out;         ///< target coefficients, per element [n][component]
+  /// Coefficients of the monomials in the barycentrics less 1/3, per element [n][component]: of
+  /// donors that are not mapped and have at most max_moment_degree.
+  std::vector<double> powers;
+  std::vector<double> out;  ///< target coefficients, per element [n][component]
 
   std::span<const double> donor_scaled(std::int32_t e) const;
+  const double* donor_powers(std::int32_t e) const {
+    return powers.data() + donor_space->offset(ElementId(e)) * static_cast<std::size_t>(components);
+  }
   std::span<double> target_out(std::int32_t e);
 
  private:

@@ -11,33 +11,12 @@
 namespace bezel::detail {
 namespace {
 
-/// Curves nearer to each other than this fraction of the smaller one count as coincident. Pieces
-/// merged so leave joints open by at most that much; the sums over a whole element close exactly
-/// all the same.
-constexpr double coincidence_fraction = 1e-13;
-/// ... and never less than the rounding of the coordinates themselves.
-constexpr double coordinate_rounding = 32.0 * 0x1p-53;
 /// sin(angle) below which a crossing's direction is not relied on.
 constexpr double reliable_sine = 1e-5;
-
-double largest_coordinate(const Box2& b) {
-  return std::max({std::abs(b.lo[0]), std::abs(b.lo[1]), std::abs(b.hi[0]), std::abs(b.hi[1])});
-}
-
-double coincidence_distance(const Box2& a, const Box2& b) {
-  return std::max(coincidence_fraction * std::min(a.diameter(), b.diameter()),
-                  coordinate_rounding * std::max(largest_coordinate(a), largest_coordinate(b)));
-}
 
 // Where a piece is looked at; the middle first, the others only when the middle is too close to an
 // edge.
 constexpr std::array<double, 5> looks = {0.5, 0.25, 0.75, 0.0625, 0.9375};
-/// A contact tells sides only when it is this far (in parameter) from edge ends and from other
-/// contacts.
-constexpr double isolation = 1e-9;
-bool is_inner(double r) {
-  return r > isolation && r < 1.0 - isolation;
-}
 /// A barycentric margin that decides at once.
 constexpr double clear_margin = 1e-7;
 
@@ -48,18 +27,33 @@ ElementOverlay::ElementOverlay(const OverlayMesh& donor, const OverlayMesh& targ
     : donor_(donor),
       target_(target),
       search_(search),
-      records_(target.edge_box.size()),
-      edge_stamp_(donor.edge_box.size(), 0) {}
+      record_place_(target.edge_box.size()),
+      vertex_place_(target.mesh->node_count()),
+      walk_stamp_(donor.edge_box.size(), 0),
+      inside_stamp_(donor.mesh->node_count(), 0),
+      edge_stamp_(donor.edge_box.size(), 0),
+      group_(donor.element_count() + 1) {}
 
 void ElementOverlay::begin_chunk() {
   ++chunk_;
+  records_.clear();
   contacts_.clear();
   coincidences_.clear();
   pieces_.clear();
   candidates_.clear();
+  candidates_of_ = -1;
 }
 
-void ElementOverlay::collect_candidate_edges() {
+void ElementOverlay::find_candidates(std::int32_t t) {
+  if (candidates_of_ == t) return;
+  candidates_of_ = t;
+  const Box2& box = target_.element_box[static_cast<std::size_t>(t)];
+  const double room = 1e-9 * box.diameter();
+  Box2 wide = box;
+  wide.lo -= Vec2{{room, room}};
+  wide.hi += Vec2{{room, room}};
+  near_.swap(candidates_);
+  search_.query(wide, near_, search_memory_, candidates_);
   candidate_edges_.clear();
   if (++edge_now_ == 0) {
     std::fill(edge_stamp_.begin(), edge_stamp_.end(), 0U);
@@ -123,20 +117,20 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
   const auto curve = target_.edge(edge);
   Box2 box = target_.edge_box[static_cast<std::size_t>(edge)];
   record = Record{};
-  record.chunk = chunk_;
   record.contact_begin = static_cast<std::uint32_t>(contacts_.size());
   record.coincidence_begin = static_cast<std::uint32_t>(coincidences_.size());
   record.piece_begin = static_cast<std::uint32_t>(pieces_.size());
 
+  const CurveCache& own = target_.edge_cache[static_cast<std::size_t>(edge)];
   Box2 generous = box;
-  const double generous_room =
-      std::max(1e-9 * box.diameter(), coordinate_rounding * largest_coordinate(box));
+  const double generous_room = std::max(1e-9 * own.diameter, coordinate_rounding * own.magnitude);
   generous.lo -= Vec2{{generous_room, generous_room}};
   generous.hi += Vec2{{generous_room, generous_room}};
   for (const std::int32_t e : candidate_edges_) {
     const Box2& other = donor_.edge_box[static_cast<std::size_t>(e)];
     if (!generous.overlaps(other)) continue;
-    const double distance = coincidence_distance(box, other);
+    const double distance =
+        coincidence_distance(own, donor_.edge_cache[static_cast<std::size_t>(e)]);
     const Vec2 room{{distance, distance}};
     Box2 wide = box;
     wide.lo -= room;
@@ -145,8 +139,7 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
     IntersectOptions options;
     options.coincidence_distance = distance;
     const auto donor_curve = donor_.edge(e);
-    intersect(target_.edge_cache[static_cast<std::size_t>(edge)],
-              donor_.edge_cache[static_cast<std::size_t>(e)], options, found_);
+    intersect(own, donor_.edge_cache[static_cast<std::size_t>(e)], options, found_);
     for (const Crossing& c : found_.crossings) {
       const auto [pa, da] = edge_point(curve, c.s);
       const auto [pb, db] = edge_point(donor_curve, c.t);
@@ -201,8 +194,10 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
     // Contacts at ends, or near each other, hold within the coincidence distance only, so their
     // order may be wrong: they cut, but tell no side.
     if (!is_inner(r) || !is_inner(first->s)) return {false, exterior};
-    if (first != contacts.begin() && r - (first - 1)->r < isolation) return {false, exterior};
-    if (first + 1 != contacts.end() && (first + 1)->r - r < isolation) return {false, exterior};
+    if (first != contacts.begin() && r - (first - 1)->r < contact_isolation)
+      return {false, exterior};
+    if (first + 1 != contacts.end() && (first + 1)->r - r < contact_isolation)
+      return {false, exterior};
     // sign +1: the target edge comes from the donor edge's left side.
     const bool left = (first->sign > 0) == before;
     return {true, donor_.edge_sides[static_cast<std::size_t>(first->donor_edge)][left ? 0 : 1]};
@@ -243,7 +238,7 @@ void ElementOverlay::donor_edges_inside(std::int32_t t) {
   marks_.clear();
   covered_.clear();
   for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
-    const Record& record = records_[side.edge.index()];
+    const Record& record = records_[static_cast<std::size_t>(record_place_[side.edge.index()].at)];
     for (std::uint32_t i = record.contact_begin; i < record.contact_end; ++i) {
       const Contact& c = contacts_[i];
       const bool inner = is_inner(c.r) && is_inner(c.s);
@@ -263,7 +258,7 @@ void ElementOverlay::donor_edges_inside(std::int32_t t) {
   });
 
   for (std::size_t i = 0; i + 1 < marks_.size(); ++i) {
-    if (marks_[i].edge == marks_[i + 1].edge && marks_[i + 1].s - marks_[i].s < isolation) {
+    if (marks_[i].edge == marks_[i + 1].edge && marks_[i + 1].s - marks_[i].s < contact_isolation) {
       marks_[i].direction = marks_[i + 1].direction = 0;
     }
   }
@@ -321,20 +316,25 @@ void ElementOverlay::donor_edges_inside(std::int32_t t) {
   }
 }
 
-std::span<const Segment> ElementOverlay::segments(std::int32_t t, OverlayCounts& counts) {
-  const Box2& box = target_.element_box[static_cast<std::size_t>(t)];
-  const double room = 1e-9 * box.diameter();
-  Box2 wide = box;
-  wide.lo -= Vec2{{room, room}};
-  wide.hi += Vec2{{room, room}};
-  near_.swap(candidates_);
-  search_.query(wide, near_, search_memory_, candidates_);
-  collect_candidate_edges();
+const ElementOverlay::Record& ElementOverlay::record_of(std::int32_t t, std::int32_t edge) {
+  Place& place = record_place_[static_cast<std::size_t>(edge)];
+  if (place.chunk != chunk_) {
+    place = {chunk_, static_cast<std::int32_t>(records_.size())};
+    Record& record = records_.emplace_back();
+    if (!walk_edge(edge, record)) {
+      find_candidates(t);
+      overlay_edge(edge, record);
+    }
+  }
+  return records_[static_cast<std::size_t>(place.at)];
+}
 
+std::span<const Segment> ElementOverlay::segments(std::int32_t t, OverlayCounts& counts) {
   segments_.clear();
+  bool walked = true;
   for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
-    Record& record = records_[side.edge.index()];
-    if (record.chunk != chunk_) overlay_edge(side.edge.value, record);
+    const Record& record = record_of(t, side.edge.value);
+    walked = walked && record.walked;
     const auto& owner = target_.edge_sides[side.edge.index()];
     if ((owner[0] != exterior ? owner[0] : owner[1]) == t) {
       counts.crossings += record.crossings;
@@ -342,7 +342,7 @@ std::span<const Segment> ElementOverlay::segments(std::int32_t t, OverlayCounts&
       counts.overlaps += record.overlaps;
       counts.unresolved += record.unresolved;
     }
-    const double smaller = std::max(target_.edge_box[side.edge.index()].diameter(), 1e-300);
+    const double smaller = std::max(target_.edge_cache[side.edge.index()].diameter, 1e-300);
     counts.max_joint_gap = std::max(counts.max_joint_gap, record.gap / smaller);
     for (std::uint32_t i = record.piece_begin; i < record.piece_end; ++i) {
       const Piece& piece = pieces_[i];
@@ -373,20 +373,12 @@ std::span<const Segment> ElementOverlay::segments(std::int32_t t, OverlayCounts&
       segments_.push_back(segment);
     }
   }
-  donor_edges_inside(t);
-  if (segments_.size() > 200) {
-    std::stable_sort(segments_.begin(), segments_.end(),
-                     [](const Segment& a, const Segment& b) { return a.donor < b.donor; });
-    return segments_;
+  if (!(walked && walk_inside(t))) {
+    find_candidates(t);
+    donor_edges_inside(t);
   }
-  // Few segments, mostly in order: a stable insertion sort needs no memory.
-  for (std::size_t i = 1; i < segments_.size(); ++i) {
-    const Segment moved = segments_[i];
-    std::size_t k = i;
-    for (; k > 0 && segments_[k - 1].donor > moved.donor; --k) segments_[k] = segments_[k - 1];
-    segments_[k] = moved;
-  }
-  return segments_;
+  group_segments();
+  return grouped_;
 }
 
 }  // namespace bezel::detail

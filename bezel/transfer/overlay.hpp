@@ -7,6 +7,7 @@
 // D is the pieces of T's edges inside D, the pieces of D's edges inside T, and the pieces on both
 // (counted once).
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -18,6 +19,23 @@
 #include "bezel/transfer/overlay_mesh.hpp"
 
 namespace bezel::detail {
+
+/// Curves nearer to each other than this fraction of the smaller one count as coincident. Pieces
+/// merged so leave joints open by at most that much; the sums over a whole element close exactly
+/// all the same.
+inline constexpr double coincidence_fraction = 1e-13;
+/// ... and never less than the rounding of the coordinates themselves.
+inline constexpr double coordinate_rounding = 32.0 * 0x1p-53;
+inline double coincidence_distance(const CurveCache& a, const CurveCache& b) {
+  return std::max(coincidence_fraction * std::min(a.diameter, b.diameter),
+                  coordinate_rounding * std::max(a.magnitude, b.magnitude));
+}
+/// A contact tells sides only when it is this far (in parameter) from edge ends and from other
+/// contacts.
+inline constexpr double contact_isolation = 1e-9;
+inline bool is_inner(double r) {
+  return r > contact_isolation && r < 1.0 - contact_isolation;
+}
 
 /// Part of an edge curve, run from parameter `from` to `to` (canonical direction of the edge; from
 /// > to reverses).
@@ -47,12 +65,10 @@ class ElementOverlay {
 
   /// Forgets the edges computed so far (memory stays bounded by a chunk of elements).
   void begin_chunk();
-  /// The segments of all T n D of target element t, sorted by donor (exterior first).
+  /// The segments of all T n D of target element t, those of each donor together.
   /// counts: contacts are counted when first computed in a chunk by their owner (the edge's left or
   /// only element).
   std::span<const Segment> segments(std::int32_t t, OverlayCounts& counts);
-  /// Donor elements whose boxes overlap the last element's box, ascending.
-  std::span<const std::int32_t> candidates() const { return candidates_; }
 
  private:
   struct Contact {
@@ -71,7 +87,8 @@ class ElementOverlay {
     std::int32_t coincidence;  // index into coincidences_, -1 when the piece is not on a donor edge
   };
   struct Record {
-    std::uint32_t chunk = 0;
+    bool walked =
+        false;  // all its contacts are plain crossings, found by walking through the donor
     std::uint32_t contact_begin = 0, contact_end = 0;
     std::uint32_t coincidence_begin = 0, coincidence_end = 0;
     std::uint32_t piece_begin = 0, piece_end = 0;
@@ -84,8 +101,24 @@ class ElementOverlay {
     std::int8_t direction;  // +1 enters T as s increases, -1 leaves, 0 unknown
   };
 
-  void collect_candidate_edges();
+  /// Where something is remembered that holds for the current chunk only.
+  struct Place {
+    std::uint32_t chunk = 0;
+    std::int32_t at = 0;
+  };
+
+  const Record& record_of(std::int32_t t, std::int32_t edge);
+  void find_candidates(std::int32_t t);
   void overlay_edge(std::int32_t edge, Record& record);
+  // Ordinary edges and elements (overlay_walk.cpp).
+  std::int32_t donor_at_vertex(std::int32_t vertex);
+  bool walk_edge(std::int32_t edge, Record& record);
+  bool walk_inside(std::int32_t t);
+  /// Puts all common points of two edges on the list of contacts, when all are plain crossings.
+  bool plain_crossings(const CurveCache& curve, const CurveCache& other, double distance,
+                       std::int32_t donor_edge, double& gap);
+  void next_walk();
+  void group_segments();
   std::int32_t locate_piece(std::span<const Vec2> curve, double r0, double r1) const;
   std::int32_t best_donor(const Vec2& p, double& margin) const;
   bool inside_target(std::int32_t t, std::span<const Vec2> curve, double s0, double s1) const;
@@ -97,7 +130,15 @@ class ElementOverlay {
   const FrontSearch& search_;
   FrontSearch::Memory search_memory_;
   std::uint32_t chunk_ = 0;
-  std::vector<Record> records_;
+  std::vector<Record> records_;              // of the chunk's edges
+  std::vector<Place> record_place_;          // by target edge
+  std::vector<Place> vertex_place_;          // by target node: the donor element around it
+  std::int32_t last_donor_ = 0;              // of the vertices looked at
+  std::vector<std::uint32_t> walk_stamp_;    // by donor edge
+  std::vector<std::uint32_t> inside_stamp_;  // by donor node
+  std::uint32_t walk_now_ = 0;
+  std::vector<std::int32_t> walk_;
+  std::int32_t candidates_of_ = -1;  // the target element that candidates_ were found for
   std::vector<Contact> contacts_;
   std::vector<Coincidence> coincidences_;
   std::vector<Piece> pieces_;
@@ -107,9 +148,14 @@ class ElementOverlay {
   std::vector<Mark> marks_;
   std::vector<std::pair<std::int32_t, std::pair<double, double>>>
       covered_;  // donor edge, s interval on T's boundary
-  std::vector<Segment> segments_;
+  std::vector<Segment> segments_, grouped_;
+  struct Group {
+    std::uint32_t stamp = 0, slot = 0;
+  };
+  std::vector<Group> group_;  // by donor element + 1
+  std::uint32_t group_now_ = 0;
+  std::vector<std::uint32_t> slots_, group_end_;
   std::vector<double> breaks_;
-  std::vector<std::uint8_t> touched_;
   CurveIntersections found_;
 };
 

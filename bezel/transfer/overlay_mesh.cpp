@@ -7,11 +7,16 @@
 #include "bezel/base/error.hpp"
 #include "bezel/base/parallel.hpp"
 #include "bezel/geometry/triangle.hpp"
+#include "bezel/transfer/group.hpp"
 
 namespace bezel::detail {
 namespace {
 
 constexpr std::size_t block = 1024;
+/// Steps from element to element before a search goes on in the tree.
+constexpr int longest_walk = 64;
+/// A point whose barycentric coordinates exceed this lies in one element only, and no edge is near.
+constexpr double clear_of_edges = 1e-8;
 
 std::uint64_t spread_bits(std::uint64_t x) {
   x &= 0xffffffffULL;
@@ -37,12 +42,15 @@ OverlayMesh::OverlayMesh(std::shared_ptr<const TriangleMesh> source, const std::
   edge_box.resize(edges);
   edge_cache.resize(edges);
   edge_sides.resize(edges);
+  edge_vertex.resize(edges);
   for (std::size_t e = 0; e < edges; ++e) {
     const std::span<Vec2> control(edge_control.data() + e * edge_size, edge_size);
     mesh->gather_edge(EdgeId(e), control);
     for (const Vec2& p : control) edge_box[e].include(p);
     edge_cache[e] = cache_curve(control);
     edge_sides[e] = {exterior, exterior};
+    const auto nodes = mesh->edge_nodes(EdgeId(e));
+    edge_vertex[e] = {nodes.front().value, nodes.back().value};
     for (const ElementSide& side : mesh->adjacent(EdgeId(e))) {
       std::int32_t& place = edge_sides[e][side.reversed ? 1 : 0];
       if (place != exterior) {
@@ -58,6 +66,7 @@ OverlayMesh::OverlayMesh(std::shared_ptr<const TriangleMesh> source, const std::
   element_control.resize(elements * element_size);
   element_box.resize(elements);
   element_area.resize(elements);
+  element_diameter.resize(elements);
   parallel_for((elements + block - 1) / block,
                [&](std::size_t b) {
                  for (std::size_t e = b * block; e < std::min(elements, (b + 1) * block); ++e) {
@@ -66,6 +75,7 @@ OverlayMesh::OverlayMesh(std::shared_ptr<const TriangleMesh> source, const std::
                                                  element_size);
                    mesh->gather(ElementId(e), control);
                    for (const Vec2& p : control) element_box[e].include(p);
+                   element_diameter[e] = element_box[e].diameter();
                    const ValidityResult validity = check_validity(degree, control);
                    if (validity.status == Validity::inverted) {
                      throw InputError({"", 0, "triangle", static_cast<std::int64_t>(e)},
@@ -102,7 +112,71 @@ std::vector<std::int32_t> OverlayMesh::spatial_order() const {
   return order;
 }
 
-FrontSearch::FrontSearch(const OverlayMesh& mesh) : mesh_(mesh), tree_(mesh.element_box) {}
+FrontSearch::FrontSearch(const OverlayMesh& mesh) : mesh_(mesh), tree_(mesh.element_box) {
+  collect_edges_at_vertices();
+}
+
+void FrontSearch::collect_edges_at_vertices() {
+  const std::size_t vertices = mesh_.mesh->node_count();
+  vertex_offset_.assign(vertices + 1, 0);
+  for (const auto& ends : mesh_.edge_vertex) {
+    for (const std::int32_t v : ends) ++vertex_offset_[static_cast<std::size_t>(v) + 1];
+  }
+  for (std::size_t v = 0; v < vertices; ++v) vertex_offset_[v + 1] += vertex_offset_[v];
+  vertex_edges_.resize(2 * mesh_.edge_vertex.size());
+  std::vector<std::uint32_t> next(vertex_offset_.begin(), vertex_offset_.end() - 1);
+  for (std::size_t e = 0; e < mesh_.edge_vertex.size(); ++e) {
+    for (const std::int32_t v : mesh_.edge_vertex[e])
+      vertex_edges_[next[static_cast<std::size_t>(v)]++] = static_cast<std::int32_t>(e);
+  }
+
+  if (mesh_.edge_vertex.empty()) return;
+  // All that can be reached from the first vertex, and whether that is every vertex.
+  std::vector<std::uint8_t> reached(vertices, 0);
+  std::vector<std::int32_t> front = {mesh_.edge_vertex.front()[0]};
+  reached[static_cast<std::size_t>(front.front())] = 1;
+  std::size_t count = 1;
+  while (!front.empty()) {
+    const std::int32_t v = front.back();
+    front.pop_back();
+    for (const std::int32_t e : edges_at(v)) {
+      const auto& ends = mesh_.edge_vertex[static_cast<std::size_t>(e)];
+      const std::int32_t other = ends[0] == v ? ends[1] : ends[0];
+      std::uint8_t& seen = reached[static_cast<std::size_t>(other)];
+      count += seen == 0 ? 1 : 0;
+      if (seen == 0) front.push_back(other);
+      seen = 1;
+    }
+  }
+  connected_ = count == mesh_.mesh->vertex_count();
+}
+
+std::int32_t FrontSearch::containing(const Vec2& p, std::int32_t start, Memory& memory) const {
+  const auto margin_of = [&](std::int32_t e, std::array<double, 3>& lambda) {
+    return (mesh_.degree == 1 || mesh_.element_box[static_cast<std::size_t>(e)].contains(p)) &&
+           invert_map(mesh_.degree, mesh_.element(e), p, lambda, false);
+  };
+  std::int32_t at = start;
+  std::array<double, 3> lambda{};
+  for (int step = 0; at != exterior && step < longest_walk; ++step) {
+    const bool known = margin_of(at, lambda);
+    // Far from a curved element the triangle of its corners shows the way.
+    if (!known) lambda = affine_frame(mesh_.corners(at)).lambda(p);
+    const auto smallest = std::min_element(lambda.begin(), lambda.end());
+    if (known && *smallest >= 0.0) return *smallest > clear_of_edges ? at : exterior;
+    const auto side = static_cast<std::size_t>(smallest - lambda.begin() + 1) % 3;
+    at = mesh_.across(at, mesh_.element_edges[static_cast<std::size_t>(at)][side].edge.value);
+  }
+  Box2 point;
+  point.include(p);
+  memory.found.clear();
+  tree_.query(point, memory.found);
+  for (const std::int32_t e : memory.found) {
+    if (margin_of(e, lambda) && *std::min_element(lambda.begin(), lambda.end()) > clear_of_edges)
+      return e;
+  }
+  return exterior;
+}
 
 void FrontSearch::query(const Box2& box, std::span<const std::int32_t> near, Memory& memory,
                         std::vector<std::int32_t>& out) const {

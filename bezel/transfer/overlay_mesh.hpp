@@ -31,10 +31,12 @@ struct OverlayMesh {
   std::vector<CurveCache> edge_cache;
   std::vector<std::array<std::int32_t, 2>>
       edge_sides;  ///< element left and right of each edge, or exterior
+  std::vector<std::array<std::int32_t, 2>> edge_vertex;  ///< nodes at an edge's ends
   std::vector<std::array<SideEdge, 3>> element_edges;
   std::vector<Vec2> element_control;
   std::vector<Box2> element_box;
-  std::vector<double> element_area;  ///< exact up to rounding
+  std::vector<double> element_area;      ///< exact up to rounding
+  std::vector<double> element_diameter;  ///< of the boxes
   Box2 box;
 
   std::size_t element_count() const { return element_box.size(); }
@@ -67,6 +69,7 @@ class FrontSearch {
   struct Memory {
     std::vector<std::uint32_t> stamp;
     std::uint32_t now = 0;
+    std::vector<std::int32_t> found;
   };
   /// Ascending element numbers. `near`: elements that may lie in the box, tried as starts of the
   /// walk. The answer does not depend on them.
@@ -74,10 +77,26 @@ class FrontSearch {
              std::vector<std::int32_t>& out) const;
   /// The element nearest to p by the distance of its corners and centre; for extending fields.
   std::int32_t nearest(const Vec2& p) const;
+  /// The element that holds p well inside; exterior when there is none, also where p is too near to
+  /// an edge to tell. The answer does not depend on the start of the walk.
+  std::int32_t containing(const Vec2& p, std::int32_t start, Memory& memory) const;
+
+  /// Whether every vertex can be reached from every other along edges.
+  bool connected() const { return connected_; }
+  /// The edges that end in a vertex (a node number).
+  std::span<const std::int32_t> edges_at(std::int32_t vertex) const {
+    const auto v = static_cast<std::size_t>(vertex);
+    return {vertex_edges_.data() + vertex_offset_[v], vertex_offset_[v + 1] - vertex_offset_[v]};
+  }
 
  private:
+  void collect_edges_at_vertices();
+
   const OverlayMesh& mesh_;
   Bvh tree_;
+  std::vector<std::uint32_t> vertex_offset_;
+  std::vector<std::int32_t> vertex_edges_;
+  bool connected_ = false;
 };
 
 /// Finds lambda with b(lambda) = p for a triangle given by control points; start: an affine guess

@@ -52,6 +52,23 @@ struct Worker {
       : overlay(donor, target, search), element(donor, target, search, groups, policy) {}
   detail::ElementOverlay overlay;
   detail::ElementTransfer element;
+  std::vector<detail::Segment> segments;  // of a chunk's elements
+  std::vector<std::size_t> segment_end;
+
+  void find_segments(std::span<const std::int32_t> elements, detail::OverlayCounts& counts) {
+    overlay.begin_chunk();
+    segments.clear();
+    segment_end.clear();
+    for (const std::int32_t t : elements) {
+      const auto own = overlay.segments(t, counts);
+      segments.insert(segments.end(), own.begin(), own.end());
+      segment_end.push_back(segments.size());
+    }
+  }
+  std::span<const detail::Segment> segments_of(std::size_t i) const {
+    const std::size_t begin = i == 0 ? 0 : segment_end[i - 1];
+    return std::span(segments).subspan(begin, segment_end[i] - begin);
+  }
 };
 
 /// Hands out workers to the running bodies of a parallel loop: at most one per thread is ever made.
@@ -180,19 +197,18 @@ detail::Swept detail::sweep(const OverlayMesh& donor, const OverlayMesh& target,
         auto worker = pool.take();
         ChunkResult& result = results[chunk];
         result.made.assign(components, 0.0);
-        worker->overlay.begin_chunk();
         ElementBlocks blocks;
-        for (std::size_t i = chunk * chunk_size;
-             i < std::min(order.size(), (chunk + 1) * chunk_size); ++i) {
+        const std::size_t begin = chunk * chunk_size,
+                          end = std::min(order.size(), (chunk + 1) * chunk_size);
+        const auto t0 = clock::now();
+        worker->find_segments(std::span(order).subspan(begin, end - begin), result.counts);
+        const auto t1 = clock::now();
+        for (std::size_t i = begin; i < end; ++i) {
           const std::int32_t t = order[i];
-          const auto t0 = clock::now();
-          const auto segments = worker->overlay.segments(t, result.counts);
-          const auto t1 = clock::now();
-          const detail::ElementOutcome outcome = worker->element.process(
-              t, segments, result.given, result.made, visit ? &blocks : nullptr);
+          const ElementOutcome outcome =
+              worker->element.process(t, worker->segments_of(i - begin), result.given, result.made,
+                                      visit ? &blocks : nullptr);
           if (visit) visit(i, t, blocks);
-          result.overlay += std::chrono::duration<double>(t1 - t0).count();
-          result.integrate += seconds_since(t1) - outcome.solve_seconds;
           result.solve += outcome.solve_seconds;
           result.counts.pairs += outcome.pairs;
           result.max_partition_residual =
@@ -209,6 +225,8 @@ detail::Swept detail::sweep(const OverlayMesh& donor, const OverlayMesh& target,
             if (result.inconsistent < 0) result.inconsistent = t;
           }
         }
+        result.overlay = std::chrono::duration<double>(t1 - t0).count();
+        result.integrate = seconds_since(t1) - result.solve;
         pool.give(std::move(worker));
         if (progress) {
           const std::lock_guard lock(progress_mutex);

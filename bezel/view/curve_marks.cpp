@@ -62,18 +62,25 @@ DrawnShape drawn_triangle(std::string name, int g, std::span<const Vec2> control
   return shape;
 }
 
-int add_polygons(CurvePicture& picture, std::span<const CurvedPolygon> polygons, int first) {
+int add_loops(CurvePicture& picture, std::span<const CurvedPolygon> loops, int first) {
+  if (loops.empty()) return first;
   Marks marks(picture, first);
-  for (const CurvedPolygon& polygon : polygons) {
-    DrawnRegion region;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const std::span<const Vec2> control = polygon.control(i);
+  DrawnRegion region;
+  for (const CurvedPolygon& loop : loops) {
+    if (!region.curves.empty()) region.further.push_back(region.curves.size());
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const std::span<const Vec2> control = loop.control(i);
       marks.mark(MarkKind::vertex, control[0]);
       region.curves.emplace_back(control.begin(), control.end());
     }
-    picture.regions.push_back(std::move(region));
   }
+  picture.regions.push_back(std::move(region));
   return marks.next();
+}
+
+int add_polygons(CurvePicture& picture, std::span<const CurvedPolygon> polygons, int first) {
+  for (const CurvedPolygon& polygon : polygons) first = add_loops(picture, {&polygon, 1}, first);
+  return first;
 }
 
 }  // namespace bezel

@@ -300,11 +300,14 @@ class Drawing {
     canvas.stroke(path, stroke);
   }
 
-  void fill_chain(Canvas& canvas, const Curves& chain, const Colour& colour) const {
+  void fill_chains(Canvas& canvas, const Curves& chains, std::span<const std::size_t> further,
+                   const Colour& colour) const {
     Path path;
-    for (std::size_t i = 0; i < chain.size(); ++i) {
-      const std::vector<Vec2> control = pixels(chain[i]);
-      if (i == 0) path.move(control[0]);
+    for (std::size_t i = 0; i < chains.size(); ++i) {
+      const std::vector<Vec2> control = pixels(chains[i]);
+      const bool next = std::binary_search(further.begin(), further.end(), i);
+      if (i > 0 && next) path.close();
+      if (i == 0 || next) path.move(control[0]);
       append(path, control);
     }
     path.close();
@@ -356,10 +359,10 @@ class Drawing {
       if (picture_.shapes[i].filled) {
         Colour tint = colours_[i];
         tint.a = 0.10;
-        fill_chain(canvas, picture_.shapes[i].curves, tint);
+        fill_chains(canvas, picture_.shapes[i].curves, {}, tint);
       }
     for (const DrawnRegion& region : picture_.regions)
-      fill_chain(canvas, region.curves, region_colour);
+      fill_chains(canvas, region.curves, region.further, region_colour);
   }
 
   void draw_nets(Canvas& canvas, std::size_t i) const {

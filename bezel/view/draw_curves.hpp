@@ -1,6 +1,7 @@
 #pragma once
 // Pictures of Bezier curves, of curved polygons, and of the points they share: SVG and PNG.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -20,9 +21,11 @@ struct DrawnShape {
   bool filled = false;                    ///< with a tint; the curves form a closed chain then
 };
 
-/// The inside of a closed chain of curves, filled.
+/// The inside of a closed chain of curves, filled; further chains in the opposite direction are
+/// holes.
 struct DrawnRegion {
   std::vector<std::vector<Vec2>> curves;
+  std::vector<std::size_t> further{};  ///< where in `curves` a further chain begins, ascending
 };
 
 /// A part of a curve, drawn as a broad band.
@@ -80,5 +83,9 @@ DrawnShape drawn_triangle(std::string name, int g, std::span<const Vec2> control
 /// `first`, polygon by polygon in the order of their edges.
 /// @return the number after the last
 int add_polygons(CurvePicture& picture, std::span<const CurvedPolygon> polygons, int first = 1);
+
+/// Adds the loops around a region and its holes (`difference`) as one region, otherwise as
+/// add_polygons.
+int add_loops(CurvePicture& picture, std::span<const CurvedPolygon> loops, int first = 1);
 
 }  // namespace bezel

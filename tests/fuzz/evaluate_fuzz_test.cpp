@@ -13,17 +13,13 @@
 #include <vector>
 
 #include "bezel/base/random.hpp"
+#include "tests/fuzz/bytes.hpp"
 
 namespace bezel {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
-
-void append(Bytes& bytes, double x) {
-  std::uint8_t raw[sizeof x];
-  std::memcpy(raw, &x, sizeof x);
-  bytes.insert(bytes.end(), raw, raw + sizeof x);
-}
+using fuzz::append;
+using fuzz::Bytes;
 
 double any_double(RandomStream& random, std::uint64_t kind) {
   static const double special[] = {
@@ -31,9 +27,7 @@ double any_double(RandomStream& random, std::uint64_t kind) {
       0x1p-537,  1 - 0x1p-53, 0x1p+1023,     -1.0,    3.0,       std::numeric_limits<double>::max(),
       0x1p-1021, 0x1p-60,     1.0 + 0x1p-52, 0x1p+300};
   if (kind == 0 || random.below(40) == 0) {
-    const std::uint64_t bits = random.next();
-    double x;
-    std::memcpy(&x, &bits, sizeof x);
+    const double x = fuzz::any_bits(random);
     if (std::isfinite(x) || kind == 0) return x;
   }
   if (kind == 1 || random.below(4) == 0) return special[random.below(16)];
@@ -43,9 +37,7 @@ double any_double(RandomStream& random, std::uint64_t kind) {
 
 TEST(EvaluateFuzz, RandomBytesAreEvaluatedOrRefused) {
   RandomStream random("evaluate fuzz", 1);
-  int tried = 0, refused = 0;
-  const auto start = std::chrono::steady_clock::now();
-  while (tried < 5000 && std::chrono::steady_clock::now() - start < std::chrono::seconds(3)) {
+  const auto make = [&] {
     const std::uint64_t kind = random.below(4);
     const bool valid = random.below(3) > 0;
     // Mostly small degrees: time goes with the square.
@@ -57,16 +49,10 @@ TEST(EvaluateFuzz, RandomBytesAreEvaluatedOrRefused) {
     for (std::uint64_t i = random.below(4) == 0 ? random.below(90) : 80; i > 0; --i)
       append(bytes, any_double(random, kind));
     bytes.resize(bytes.size() - random.below(9) % bytes.size());
-    try {
-      refused += evaluate_fuzz::evaluate_bytes(bytes) ? 0 : 1;
-    } catch (const std::logic_error& error) {
-      FAIL() << "input " << tried << " of seed 1: " << error.what();
-    }
-    ++tried;
-  }
-  RecordProperty("tried", tried);
-  EXPECT_GT(refused, tried / 50);
-  EXPECT_GT(tried - refused, tried / 4);
+    return bytes;
+  };
+  fuzz::try_many(5000, std::chrono::seconds(3), make,
+                 [](const Bytes& bytes) { return evaluate_fuzz::evaluate_bytes(bytes); });
 }
 
 TEST(EvaluateFuzz, ShortInputs) {

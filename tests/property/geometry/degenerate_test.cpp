@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -119,6 +120,30 @@ TEST(DegenerateTest, ContactOfOrderTwoThreeFour) {
   EXPECT_EQ(total(three), 1u);
   EXPECT_EQ(three.tangencies[0].order, 3);
   EXPECT_EQ(three.tangencies[0].s, 0.5);
+  // The axis passes from left to right of the cubic; the sign is that of cross(a', b') nearby.
+  EXPECT_EQ(three.tangencies[0].sign, -1);
+  const Points back(cubic.rbegin(), cubic.rend()), axis_back(axis.rbegin(), axis.rend());
+  // x^2 and x^2 + x^3: neither is straight.
+  const Points square{{{-3, 9}}, {{0, -9}}, {{3, 9}}};
+  const Points with_cube{{{-3, -18}}, {{-1, 24}}, {{1, -30}}, {{3, 36}}};
+  const Points square_back(square.rbegin(), square.rend()),
+      with_cube_back(with_cube.rbegin(), with_cube.rend());
+  const auto sign = [](const Points& a, const Points& b) {
+    const auto found = intersect(a, b);
+    EXPECT_EQ(found.tangencies.size(), 1u) << show(a, b, found);
+    return found.tangencies.empty() ? 0 : found.tangencies[0].sign;
+  };
+  for (const auto& [a, a_back, b, b_back] :
+       {std::array{cubic, back, axis, axis_back},
+        std::array{with_cube, with_cube_back, square, square_back}}) {
+    EXPECT_EQ(sign(a, b), -1);
+    EXPECT_EQ(sign(b, a), 1);
+    EXPECT_EQ(sign(a_back, b), 1);
+    EXPECT_EQ(sign(a, b_back), 1);
+    EXPECT_EQ(sign(a_back, b_back), -1);
+    EXPECT_EQ(sign(b_back, a), -1);
+  }
+  EXPECT_EQ(two.tangencies[0].sign, 0);
   // y = x^4 on [-1, 1].
   const Points quartic{{{-1, 1}}, {{-0.5, -1}}, {{0, 1}}, {{0.5, -1}}, {{1, 1}}};
   const auto four = intersect(quartic, axis);

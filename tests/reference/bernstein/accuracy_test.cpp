@@ -32,7 +32,10 @@ using Span = std::span<const double>;
 /// Largest error / bound seen.
 class Worst {
  public:
-  ~Worst() { testing::Test::RecordProperty("worst", std::to_string(worst_)); }
+  explicit Worst(const char* key = "worst") : key_(key) {}
+  Worst(const Worst&) = delete;
+  Worst& operator=(const Worst&) = delete;
+  ~Worst() { testing::Test::RecordProperty(key_, std::to_string(worst_)); }
   void see(double value, const Rational& truth, double bound, int d) {
     const double error = value == truth ? 0.0 : exact::distance(value, truth);
     const double ratio = error == 0.0 ? 0.0 : error / bound;
@@ -45,6 +48,7 @@ class Worst {
   }
 
  private:
+  const char* key_;
   double worst_ = 0.0;
 };
 
@@ -82,6 +86,22 @@ TEST(IntervalAccuracy, EvaluateWithin3dURelativeToAbsolutePolynomial) {
       const Rational truth = kernel::evaluate_unchecked(d, exact_b.data(), Rational(s));
       const Rational size = kernel::evaluate_unchecked(d, exact_abs.data(), Rational(s));
       worst.see(evaluate(Span(b), s), truth, 3.0 * d * u * size.get_d() * slack, d);
+    }
+  });
+}
+
+TEST(IntervalAccuracy, ManyPointsWithin3dURelativeToAbsolutePolynomial) {
+  Worst worst;
+  at_interval_degrees([&](int d, const Doubles& b, std::mt19937_64& random) {
+    Doubles s{0.0, 1.0, parameter(random) * 0x1p-20, 1.0 - parameter(random) * 0x1p-20};
+    while (s.size() < 8) s.push_back(parameter(random));
+    Doubles value(s.size());
+    evaluate(b, s, value);
+    const auto exact_b = rationals(b), exact_abs = rationals(absolute(b));
+    for (std::size_t q = 0; q < s.size(); ++q) {
+      const Rational truth = kernel::evaluate_unchecked(d, exact_b.data(), Rational(s[q]));
+      const Rational size = kernel::evaluate_unchecked(d, exact_abs.data(), Rational(s[q]));
+      worst.see(value[q], truth, 3.0 * d * u * size.get_d() * slack, d);
     }
   });
 }
@@ -241,7 +261,7 @@ std::array<Rational, 3> exactly(const Lambda& x) {
 
 // Per level one product and at most two sums.
 TEST(TriangleAccuracy, EvaluateWithin3dURelativeToAbsolutePolynomial) {
-  Worst worst;
+  Worst worst, many("worst of many");
   at_triangle_degrees(max_triangle_degree, [&](int d, const Doubles& b, std::mt19937_64& random) {
     if (d > 20 && d % 5 != 0) return;
     const Lambda x = point(random);
@@ -254,7 +274,11 @@ TEST(TriangleAccuracy, EvaluateWithin3dURelativeToAbsolutePolynomial) {
       truth += exact_b[n] * weights[n];
       size += exact_abs[n] * weights[n];
     }
-    worst.see(evaluate(d, Span(b), x), truth, 3.0 * d * u * size.get_d() * slack, d);
+    const double bound = 3.0 * d * u * size.get_d() * slack;
+    worst.see(evaluate(d, Span(b), x), truth, bound, d);
+    double value;  // the evaluation of many points has the same bound
+    evaluate(d, Span(b), {&x[1], 1}, {&x[2], 1}, {&value, 1});
+    many.see(value, truth, bound, d);
   });
 }
 

@@ -12,34 +12,15 @@
 #include <vector>
 
 #include "bezel/geometry/curve.hpp"
+#include "support/reference_data.hpp"
 
 namespace {
 
 using bezel::Vec2;
 using nlohmann::json;
-
-json load(const std::string& name) {
-  std::ifstream in(std::string(BEZEL_REFERENCE_DATA) + "/" + name);
-  EXPECT_TRUE(in.good()) << name;
-  return json::parse(in);
-}
-
-double number(const json& j) {
-  if (j.is_number()) return j.get<double>();
-  const std::string text = j.get<std::string>();
-  const auto slash = text.find('/');
-  if (slash == std::string::npos) return std::strtod(text.c_str(), nullptr);  // hex float
-  return std::strtod(text.substr(0, slash).c_str(), nullptr) /
-         std::strtod(text.substr(slash + 1).c_str(), nullptr);
-}
-
-std::vector<Vec2> curve(const json& curves, const std::string& id) {
-  const json& points = curves.at(id).at("control_points");
-  std::vector<Vec2> control;
-  for (std::size_t i = 0; i < points.at(0).size(); ++i)
-    control.push_back(Vec2{{number(points.at(0).at(i)), number(points.at(1).at(i))}});
-  return control;
-}
+using support::load_reference;
+using support::reference_control;
+using support::reference_number;
 
 struct Pair {
   double s, t;
@@ -80,7 +61,7 @@ void check(const json& c, const bezel::CurveIntersections& found, const json& ex
   EXPECT_TRUE(found.unresolved.empty()) << show(found);
   std::vector<Pair> expected;
   for (std::size_t i = 0; i < expected_s.size(); ++i)
-    expected.push_back({number(expected_s.at(i)), number(expected_t.at(i))});
+    expected.push_back({reference_number(expected_s.at(i)), reference_number(expected_t.at(i))});
   std::sort(expected.begin(), expected.end(),
             [](const Pair& p, const Pair& q) { return p.s < q.s; });
   // Case 33 is named coincident because both curves belong to one algebraic curve; on [0, 1] they
@@ -127,11 +108,13 @@ void check(const json& c, const bezel::CurveIntersections& found, const json& ex
 class CurvePairs : public testing::TestWithParam<double> {};
 
 TEST_P(CurvePairs, AgreeWithTheReference) {
-  const json curves = load("curves.json"), cases = load("curve_intersections.json");
+  const json curves = load_reference("curves.json"),
+             cases = load_reference("curve_intersections.json");
   ASSERT_EQ(cases.size(), 53u);
   for (const json& c : cases) {
     SCOPED_TRACE("case " + std::to_string(c.at("id").get<int>()));
-    const auto a = curve(curves, c.at("curve1")), b = curve(curves, c.at("curve2"));
+    const auto a = reference_control(curves, c.at("curve1")),
+               b = reference_control(curves, c.at("curve2"));
     const double tolerance = c.at("type") == "tangent" ? 1e-7 : 1e-12;
     bezel::IntersectOptions options;
     options.coincidence_distance = GetParam();

@@ -14,6 +14,7 @@
 
 #include "bezel/bernstein/index.hpp"
 #include "bezel/geometry/triangle_intersection.hpp"
+#include "support/reference_data.hpp"
 
 namespace {
 
@@ -21,21 +22,9 @@ using bezel::CurvedPolygon;
 using bezel::TriangleRelation;
 using bezel::Vec2;
 using nlohmann::json;
-
-json load(const std::string& name) {
-  std::ifstream in(std::string(BEZEL_REFERENCE_DATA) + "/" + name);
-  EXPECT_TRUE(in.good()) << name;
-  return json::parse(in);
-}
-
-double number(const json& j) {
-  if (j.is_number()) return j.get<double>();
-  const std::string text = j.get<std::string>();
-  const auto slash = text.find('/');
-  if (slash == std::string::npos) return std::strtod(text.c_str(), nullptr);  // hex float
-  return std::strtod(text.substr(0, slash).c_str(), nullptr) /
-         std::strtod(text.substr(slash + 1).c_str(), nullptr);
-}
+using support::load_reference;
+using support::reference_control;
+using support::reference_number;
 
 struct Triangle {
   int degree = 1;
@@ -43,10 +32,8 @@ struct Triangle {
 };
 
 Triangle triangle(const json& triangles, const std::string& id) {
-  const json& points = triangles.at(id).at("control_points");
   Triangle out;
-  for (std::size_t i = 0; i < points.at(0).size(); ++i)
-    out.control.push_back(Vec2{{number(points.at(0).at(i)), number(points.at(1).at(i))}});
+  out.control = reference_control(triangles, id);
   while (bezel::bernstein::triangle_size(out.degree) < static_cast<int>(out.control.size()))
     ++out.degree;
   return out;
@@ -77,10 +64,10 @@ bool agrees(const CurvedPolygon& p, std::size_t shift, const json& expected, boo
     const auto& e = p.edges()[(i + shift) % n];
     const Vec2 v = p.vertices()[static_cast<std::size_t>(e.vertex)].point;
     if ((exchanged ? 1 - e.triangle : e.triangle) * 3 + e.edge != edges.at(i).get<int>() ||
-        !(std::fabs(e.s0 - number(starts.at(i))) <= 1e-12) ||
-        !(std::fabs(e.s1 - number(ends.at(i))) <= 1e-12) ||
-        !(std::fabs(v.x() - number(nodes.at(i).at(0))) <= 1e-14) ||
-        !(std::fabs(v.y() - number(nodes.at(i).at(1))) <= 1e-14))
+        !(std::fabs(e.s0 - reference_number(starts.at(i))) <= 1e-12) ||
+        !(std::fabs(e.s1 - reference_number(ends.at(i))) <= 1e-12) ||
+        !(std::fabs(v.x() - reference_number(nodes.at(i).at(0))) <= 1e-14) ||
+        !(std::fabs(v.y() - reference_number(nodes.at(i).at(1))) <= 1e-14))
       return false;
   }
   return true;
@@ -119,7 +106,8 @@ void check(const bezel::TriangleIntersections& found, const json& expected, bool
 }
 
 TEST(TrianglePairs, AgreeWithTheReference) {
-  const json triangles = load("triangles.json"), cases = load("triangle_intersections.json");
+  const json triangles = load_reference("triangles.json"),
+             cases = load_reference("triangle_intersections.json");
   ASSERT_EQ(cases.size(), 36u);
   for (const json& c : cases) {
     SCOPED_TRACE("case " + std::to_string(c.at("id").get<int>()));

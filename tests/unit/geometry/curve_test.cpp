@@ -174,6 +174,8 @@ TEST(IntersectTest, ACuspOnTheOtherCurve) {
   EXPECT_EQ(along.tangencies[0].s, 0.5);
   EXPECT_EQ(along.tangencies[0].t, 0.375);
   EXPECT_EQ(along.tangencies[0].order, 3);
+  EXPECT_EQ(across.tangencies[0].sign, 0);
+  EXPECT_EQ(along.tangencies[0].sign, 1);  // the curve comes from the left of the line
 }
 
 TEST(IntersectTest, TouchingAStraightCurveWithAnUnevenParameter) {

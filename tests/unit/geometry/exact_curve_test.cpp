@@ -65,6 +65,14 @@ TEST(ExactCurve, OrderOfContact) {
   // A cusp across the line and along it.
   const Points cusp{{{0, 0}}, {{1, 1}}, {{0, 1}}, {{1, 0}}};
   EXPECT_EQ(order(cusp, {{{-1, 0.75}}, {{2, 0.75}}}, half, half).order, 2);
+  // Which way the curves cross: cubics through the x axis upwards, in either direction.
+  const Points up{{{-3, -1}}, {{-1, 1}}, {{1, -1}}, {{3, 1}}}, down(up.rbegin(), up.rend());
+  const Points right{{{-3, 0}}, {{3, 0}}}, left(right.rbegin(), right.rend());
+  EXPECT_EQ(order(up, right, half, half).sign, -1);  // the axis passes from left to right of it
+  EXPECT_EQ(order(up, left, half, half).sign, 1);
+  EXPECT_EQ(order(down, right, half, half).sign, 1);
+  EXPECT_EQ(order(right, up, half, half).sign, 1);
+  EXPECT_EQ(order(parabola, axis, half, half).sign, 0);
   // A curve and itself: no order within any limit.
   EXPECT_EQ(order(parabola, parabola, half, half).order, 0);
 }

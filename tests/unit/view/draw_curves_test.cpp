@@ -232,6 +232,27 @@ TEST(CurveMarks, TrianglesHaveThreeSidesAndPolygonsTheirVertices) {
   EXPECT_EQ(count(text, "fill-opacity=\"0.1\""), 2U);  // the tints
 }
 
+TEST(CurveMarks, LoopsAreOneRegionWithHoles) {
+  const std::vector<Vec2> a{Vec2{{0, 0}}, Vec2{{4, 0}}, Vec2{{0, 4}}};
+  const std::vector<Vec2> b{Vec2{{1, 1}}, Vec2{{2, 1}}, Vec2{{1, 2}}};
+  CurvePicture picture;
+  picture.shapes = {{"a", {{a[0], a[1]}}}};
+  EXPECT_EQ(add_loops(picture, difference(1, b, 1, a).loops), 1);  // nothing remains
+  EXPECT_TRUE(picture.regions.empty());
+  EXPECT_EQ(add_loops(picture, difference(1, a, 1, b).loops), 7);
+  ASSERT_EQ(picture.regions.size(), 1U);
+  EXPECT_EQ(picture.regions[0].curves.size(), 6U);
+  EXPECT_EQ(picture.regions[0].further, std::vector<std::size_t>{3});
+  // One path of two closed parts, the second the other way round: a hole in it.
+  draw_curves(scratch("hole.svg"), picture);
+  const std::string text = read_file(scratch("hole.svg"));
+  const std::size_t fill = text.find("fill-opacity=\"0.4\"");
+  ASSERT_NE(fill, std::string::npos);
+  const std::size_t start = text.rfind("<path", fill);
+  EXPECT_EQ(count(text.substr(start, fill - start), "M"), 2U);
+  EXPECT_EQ(count(text.substr(start, fill - start), "Z"), 2U);
+}
+
 TEST(DrawCurves, LongLegendsAreCut) {
   CurvePicture picture;
   for (int i = 0; i < 20; ++i) picture.shapes.push_back({std::to_string(i), {line}});

@@ -1,0 +1,295 @@
+// Regions from their boundary pieces: shape, and sums by moments where both fields are polynomials
+// in the plane.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "bezel/geometry/curve_kernel.hpp"
+#include "bezel/transfer/accumulate.hpp"
+#include "bezel/transfer/element_kernel.hpp"
+
+namespace bezel::detail {
+namespace {
+
+Vec2 mix(const Vec2& a, const Vec2& b, double s) {
+  return (1.0 - s) * a + s * b;
+}
+
+/// The control points of a part of a curve, from - origin, appended; exact at ends 0 and 1.
+void append_part(std::span<const Vec2> curve, const Part& part, const Vec2& origin,
+                 std::vector<Vec2>& out) {
+  const std::size_t first = out.size();
+  const double from = part.from, to = part.to;
+  if (curve.size() == 2) {
+    const Vec2 a = curve[0] - origin, b = curve[1] - origin;
+    out.push_back(from == 0.0 ? a : from == 1.0 ? b : mix(a, b, from));
+    out.push_back(to == 0.0 ? a : to == 1.0 ? b : mix(a, b, to));
+    return;
+  }
+  const auto n = static_cast<int>(curve.size());
+  for (const Vec2& p : curve) out.push_back(p - origin);
+  if (from == 0.0 && to == 1.0) return;
+  Vec2* p = out.data() + first;
+  if (n == 3 && from != 1.0 && to != 0.0) {
+    // The blossom at (from, from), (from, to), (to, to).
+    const Vec2 a = mix(p[0], p[1], from), b = mix(p[1], p[2], from);
+    const Vec2 c = mix(p[0], p[1], to), d = mix(p[1], p[2], to);
+    const Vec2 last = p[2];
+    p[0] = from == 0.0 ? p[0] : mix(a, b, from);
+    p[1] = mix(a, b, to);
+    p[2] = to == 1.0 ? last : mix(c, d, to);
+    return;
+  }
+  geometry_kernel::PointBuffer<geometry_kernel::max_curve_points> room;
+  Vec2* q = room.data();
+  geometry_kernel::restrict_curve(n - 1, p, std::min(from, to), std::max(from, to), q);
+  for (int i = 0; i < n; ++i) p[i] = from < to ? q[i] : q[n - 1 - i];
+}
+
+/// Twice the area between a piece and the rays from the origin to its ends: the sum of
+/// weight[i, j] cross(p_i, p_j) over i < j, weight[i, j] = integral of B_i B_j' - B_j B_i'.
+double twice_area(const Vec2* p, int degree, const std::vector<double>& weight) {
+  double sum = 0.0;
+  std::size_t n = 0;
+  for (int i = 0; i < degree; ++i)
+    for (int j = i + 1; j <= degree; ++j, ++n) sum += weight[n] * cross(p[i], p[j]);
+  return sum;
+}
+
+/// Displacements in the plane to barycentrics 1 and 2.
+Vec2 to_barycentric(const Frame& frame, const Vec2& x) {
+  return {{dot(frame.gradient[1], x), dot(frame.gradient[2], x)}};
+}
+
+}  // namespace
+
+ElementTransfer::RunShape ElementTransfer::run_shape(std::span<const Segment> run) {
+  RunShape shape{};
+  piece_control_.clear();
+  piece_degree_.clear();
+  Vec2 centre;
+  Vec2 sum;
+  for (const Segment& segment : run) {
+    const bool source = segment.target.edge < 0;
+    const Part& part = source ? segment.source : segment.target;
+    const auto control = (source ? donor_ : target_).edge(part.edge);
+    const std::size_t first = piece_control_.size();
+    append_part(control, part, origin_, piece_control_);
+    piece_degree_.push_back(static_cast<int>(control.size()) - 1);
+    centre += piece_control_[first];
+    sum += piece_control_.back() - piece_control_[first];
+  }
+  centre *= 1.0 / static_cast<double>(run.size());
+  shape.relative = centre;
+  shape.centre = origin_ + centre;
+  shape.gap = norm(sum);
+  double twice = 0.0;
+  Vec2* p = piece_control_.data();
+  for (const int degree : piece_degree_) {
+    for (int i = 0; i <= degree; ++i) p[i] -= centre;
+    twice += degree == 1 ? cross(p[0], p[1]) : twice_area(p, degree, area_weights(degree));
+    p += degree + 1;
+  }
+  shape.area = 0.5 * twice;
+  return shape;
+}
+
+bool ElementTransfer::by_moments(const Group& g, std::int32_t t, std::int32_t d) {
+  const int degree = g.target_space->degree(ElementId(t));
+  return !g.donor_mapped && !g.target_mapped && degree <= max_moment_degree &&
+         degree == g.donor_space->degree(ElementId(d));
+}
+
+const PieceTable& ElementTransfer::piece_table(int degree, int moments) {
+  const auto at = static_cast<std::size_t>(degree * (2 * max_moment_degree + 1) + moments);
+  if (tables_.size() <= at) tables_.resize(at + 1);
+  if (!tables_[at]) tables_[at] = std::make_unique<PieceTable>(degree, moments);
+  return *tables_[at];
+}
+
+// In the target's barycentrics about the region's centre; piece_control_ holds the pieces about it.
+void ElementTransfer::add_pair_moments(const Group& g, std::int32_t t, std::int32_t d,
+                                       const RunShape& shape, Accumulators& sums,
+                                       std::span<double> mass) {
+  const int degree = g.target_space->degree(ElementId(t));
+  const Frame& target = g.target_frame[static_cast<std::size_t>(t)];
+  const Frame& donor = g.donor_frame[static_cast<std::size_t>(d)];
+  local_control_.resize(piece_control_.size());
+  for (std::size_t i = 0; i < piece_control_.size(); ++i)
+    local_control_[i] = to_barycentric(target, piece_control_[i]);
+  moment_pieces_.clear();
+  const Vec2* p = local_control_.data();
+  for (const int own : piece_degree_) {
+    moment_pieces_.push_back({p, &piece_table(own, 2 * degree)});
+    p += own + 1;
+  }
+  const auto size = static_cast<std::size_t>(bernstein::triangle_size(2 * degree));
+  moments_.resize(size);
+  region_moments(2 * degree, moment_pieces_, moments_.data());
+  const double scale = 1.0 / cross(target.gradient[1], target.gradient[2]);
+  for (double& m : moments_) m *= scale;
+
+  RegionPlace place;
+  const Vec2 in_target = to_barycentric(target, (origin_ - target.centre) + shape.relative);
+  const Vec2 in_donor = to_barycentric(donor, (origin_ - donor.centre) + shape.relative);
+  // The inverse of the target's gradients has the columns (g2y, -g2x), (-g1y, g1x) times scale.
+  const Vec2& g1 = target.gradient[1];
+  const Vec2& g2 = target.gradient[2];
+  const Vec2 first = to_barycentric(donor, Vec2{{g2[1] * scale, -g2[0] * scale}});
+  const Vec2 second = to_barycentric(donor, Vec2{{-g1[1] * scale, g1[0] * scale}});
+  place.in_target = {in_target[0], in_target[1]};
+  place.in_donor = {in_donor[0], in_donor[1]};
+  place.to_donor = {first[0], second[0], first[1], second[1]};
+  add_region(degree, place, moments_.data(), g.components, g.donor_powers(d), sums.product.data(),
+             sums.basis.data(), mass.data());
+}
+
+bool ElementTransfer::can_batch(const Group& g) {
+  const int degree = g.target_space->uniform_degree();
+  return !g.donor_mapped && !g.target_mapped && degree >= 0 && degree <= max_moment_degree &&
+         degree == g.donor_space->uniform_degree();
+}
+
+TargetPlace ElementTransfer::target_place(const Group& g, std::int32_t t) {
+  const Frame& frame = g.target_frame[static_cast<std::size_t>(t)];
+  const Vec2 &first = frame.gradient[1], &second = frame.gradient[2];
+  const double area = 1.0 / cross(first, second);
+  return {frame.centre,
+          first,
+          second,
+          Vec2{{second[1] * area, -second[0] * area}},
+          Vec2{{-first[1] * area, first[0] * area}},
+          area};
+}
+
+void ElementTransfer::fill_batch(std::span<const Segment> segments) {
+  const int degree = target_.degree;
+  const std::size_t points = static_cast<std::size_t>(degree) + 1, count = segments.size();
+  batch_.resize(count, degree, 2 * max_moment_degree);
+  const std::size_t stride = batch_.stride;
+  const Vec2* const curves[2] = {target_.edge_control.data(), donor_.edge_control.data()};
+  double *from = batch_.from.data(), *to = batch_.to.data();
+  double *x = batch_.x.data(), *y = batch_.y.data();
+  for (std::size_t i = 0; i < stride; ++i) {
+    // The padding repeats the last piece.
+    const Segment& segment = segments[i < count ? i : count - 1];
+    const std::size_t source = segment.target.edge < 0 ? 1 : 0;
+    const Part* const parts[2] = {&segment.target, &segment.source};
+    const Part& part = *parts[source];
+    const Vec2* p = curves[source] + static_cast<std::size_t>(part.edge) * points;
+    from[i] = part.from;
+    to[i] = part.to;
+    for (std::size_t k = 0; k < points; ++k) {
+      x[k * stride + i] = p[k].x();
+      y[k * stride + i] = p[k].y();
+    }
+  }
+}
+
+void ElementTransfer::note_region(std::int32_t t, std::int32_t d, double area, double gap,
+                                  ElementOutcome& outcome) const {
+  double size = target_.element_diameter[static_cast<std::size_t>(t)];
+  double smaller = target_.element_area[static_cast<std::size_t>(t)];
+  if (d != exterior) {
+    size = std::min(size, donor_.element_diameter[static_cast<std::size_t>(d)]);
+    smaller = std::min(smaller, donor_.element_area[static_cast<std::size_t>(d)]);
+  }
+  outcome.max_joint_gap = std::max(outcome.max_joint_gap, gap / size);
+  if (gap > largest_joint_gap * size || area < -largest_joint_gap * smaller)
+    outcome.inconsistent = true;
+}
+
+void ElementTransfer::add_batched(std::size_t i, std::int32_t t, std::span<const Segment> segments,
+                                  std::span<double> mass) {
+  const Group& g = groups_[i];
+  const auto nc = static_cast<std::size_t>(g.components);
+  const int degree = g.target_space->uniform_degree();
+  const TargetPlace place = target_place(g, t);
+  piece_moments(piece_table(target_.degree, 2 * degree), 2 * degree, place, batch_);
+  for (BatchRegion& region : regions_) {
+    const std::int32_t d = segments[region.begin].donor;
+    region.far = false;
+    region.donor = nullptr;
+    if (d == exterior) continue;
+    region.frame = &g.donor_frame[static_cast<std::size_t>(d)];
+    region.donor = g.donor_powers(d);
+  }
+  Accumulators& sums = moment_sums_[i];
+  add_batch(degree, place, batch_, regions_, g.components, sums.product.data(), sums.basis.data(),
+            mass.data());
+  for (std::size_t k = 0; k < regions_.size(); ++k) {
+    if (!regions_[k].far) continue;
+    const auto run = segments.subspan(regions_[k].begin, regions_[k].end - regions_[k].begin);
+    add_pair_moments(g, t, run.front().donor, run_shape(run), sums, mass.subspan(k * nc, nc));
+  }
+}
+
+void ElementTransfer::moments_to_powers(const Group& g, std::int32_t t, const Accumulators& moments,
+                                        Accumulators& sums) {
+  const int degree = g.target_space->degree(ElementId(t));
+  powers_from_moments(degree, 1, moments.basis.data(), sums.basis.data());
+  powers_from_moments(degree, g.components, moments.product.data(), sums.product.data());
+}
+
+// The products of two basis functions of degree p are multiples of those of degree 2 p.
+bool ElementTransfer::moment_factor(const Group& g, std::int32_t t) {
+  const int p = g.target_space->degree(ElementId(t));
+  if (g.target_mapped || p > max_moment_degree) return false;
+  const Frame& frame = g.target_frame[static_cast<std::size_t>(t)];
+  const int degree = target_.degree;
+  const auto points = static_cast<std::size_t>(degree + 1);
+  local_control_.resize(3 * points);
+  moment_pieces_.clear();
+  std::size_t first = 0;
+  for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
+    const auto control = target_.edge(side.edge.value);
+    for (std::size_t i = 0; i < points; ++i) {
+      const Vec2& x = control[side.reversed ? points - 1 - i : i];
+      local_control_[first + i] = to_barycentric(frame, x - frame.centre);
+    }
+    moment_pieces_.push_back({local_control_.data() + first, &piece_table(degree, 2 * p)});
+    first += points;
+  }
+  const auto size = static_cast<std::size_t>(bernstein::triangle_size(2 * p));
+  moments_.resize(2 * size);
+  region_moments(2 * p, moment_pieces_, moments_.data());
+  const double scale = 1.0 / cross(frame.gradient[1], frame.gradient[2]);
+  double* powers = moments_.data() + size;
+  const std::vector<double>& matrix = power_matrix(2 * p);
+  for (std::size_t n = 0; n < size; ++n) {
+    double sum = 0.0;
+    for (std::size_t m = 0; m < size; ++m) sum += matrix[n * size + m] * moments_[m];
+    powers[n] = sum * scale;
+  }
+  const auto functions = static_cast<std::size_t>(bernstein::triangle_size(p));
+  const std::vector<double>& own_matrix = power_matrix(p);
+  const auto factors = multinomials(p);
+  factor_.scale = 1.0;
+  factor_.lower.resize(functions * functions);
+  factor_.integrals.resize(functions);
+  for (int n = 0, k = 0; k <= p; ++k) {
+    for (int j = 0; j <= p - k; ++j, ++n) {
+      const auto row = static_cast<std::size_t>(n);
+      double integral = 0.0;
+      std::size_t at = 0;
+      for (int b = 0; b <= p; ++b)
+        for (int a = 0; a <= p - b; ++a, ++at)
+          integral += own_matrix[row * functions + at] *
+                      moments_[static_cast<std::size_t>(bernstein::triangle_index(2 * p, a, b))];
+      factor_.integrals[row] = integral * scale * factors[row];
+      for (int m = 0, l = 0; l <= p; ++l) {
+        for (int i = 0; i <= p - l && m <= n; ++i, ++m) {
+          const auto column = static_cast<std::size_t>(m);
+          factor_.lower[row * functions + column] =
+              factors[row] * factors[column] *
+              powers[static_cast<std::size_t>(bernstein::triangle_index(2 * p, j + i, k + l))];
+        }
+      }
+    }
+  }
+  return cholesky(functions, factor_);
+}
+
+}  // namespace bezel::detail
