@@ -7,9 +7,7 @@
 #include "bezel/base/error.hpp"
 
 namespace bezel::cli {
-namespace {
 
-// A whole finite number.
 std::optional<double> parse_number(std::string_view text) {
   if (!text.empty() && text[0] == '+') text.remove_prefix(1);
   double value = 0;
@@ -18,8 +16,6 @@ std::optional<double> parse_number(std::string_view text) {
     return {};
   return value;
 }
-
-}  // namespace
 
 std::pair<double, double> parse_pair(const std::string& option, const std::string& text) {
   const auto comma = text.find(',');

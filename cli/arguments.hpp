@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,9 @@
 #include "cli/command.hpp"
 
 namespace bezel::cli {
+
+/// A whole text as a finite number, or nothing.
+std::optional<double> parse_number(std::string_view text);
 
 /// "LO,HI" or "X,Y". @throws UsageError "--center: expected two numbers such as 0.5,-1, found '…'"
 std::pair<double, double> parse_pair(const std::string& option, const std::string& text);

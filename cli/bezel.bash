@@ -17,13 +17,17 @@ _bezel() {
     words=$("${COMP_WORDS[0]}" --help 2>/dev/null | sed -n '/^Subcommands:/,$ s/^  \([a-z]\+\) .*/\1/p')
   else
     case $previous in
-      mesh) words='square rectangle disc annulus lshape' ;;
-      study) words='transfer compensated newton' ;;
+      mesh) words='square rectangle disc annulus lshape curves' ;;
+      study) words='transfer compensated newton curves' ;;
+      --method) words='standard chord arclength l2 equal-tangent orthogonal-distance best' ;;
       --precision) words='1 2 3 4 certified' ;;
       --newton) words='basic accurate full triple' ;;
       --basis) words='reference physical' ;;
       --continuity) words='dg cg' ;;
+      --mass-method) words='auto cholesky conjugate_gradients petsc' ;;
       --uncovered) words='error extend zero' ;;
+      --bounds) words='local none' ;;
+      --conserve) words='covered total' ;;
       --pattern) words='structured unstructured' ;;
       --colormap) words='viridis cividis coolwarm grey' ;;
       --format | --from) words='msh22_ascii msh22_binary msh41_ascii msh41_binary vtu native' ;;

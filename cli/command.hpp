@@ -36,6 +36,7 @@ void add_view(CLI::App& app, Context& context);
 void add_eval(CLI::App& app, Context& context);
 void add_roots(CLI::App& app, Context& context);
 void add_intersect(CLI::App& app, Context& context);
+void add_curve(CLI::App& app, Context& context);
 void add_study(CLI::App& app, Context& context);
 
 }  // namespace bezel::cli

@@ -92,6 +92,7 @@ int run(int argc, char** argv) {
   add_eval(app, context);
   add_roots(app, context);
   add_intersect(app, context);
+  add_curve(app, context);
   add_study(app, context);
 
   try {

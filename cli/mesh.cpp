@@ -1,7 +1,8 @@
-// bezel mesh: meshes of simple shapes.
+// bezel mesh: meshes of simple shapes, and meshes that follow curves.
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 #include "bezel/base/error.hpp"
 #include "bezel/mesh/generate.hpp"
 #include "cli/arguments.hpp"
+#include "cli/mesh_curves.hpp"
 #include "cli/output.hpp"
 
 namespace bezel::cli {
@@ -19,6 +21,7 @@ struct MeshOptions {
   GenerateOptions generate;
   std::optional<double> width, height, radius, inner_radius;
   int refine = 0;
+  MeshCurvesOptions curves;
   std::optional<Format> format;
 };
 
@@ -51,6 +54,42 @@ TriangleMesh generate(const MeshOptions& o, const GenerateOptions& g) {
   return generate_disc(o.radius.value_or(1), g);
 }
 
+const std::vector<std::string> shapes = {"square", "rectangle", "disc", "annulus", "lshape"};
+
+/// A shape, refined.
+TriangleMesh generated(const MeshOptions& options, const GenerateOptions& g) {
+  if (std::find(shapes.begin(), shapes.end(), options.shape) == shapes.end())
+    throw UsageError(
+        fmt::format("SHAPE: {} not in {{square,rectangle,disc,annulus,lshape}}", options.shape));
+  TriangleMesh mesh = generate(options, g);
+  const double refined = std::ldexp(static_cast<double>(mesh.element_count()), 2 * options.refine);
+  if (refined > most_elements) {
+    throw InputError(fmt::format("--refine {} would give {:.3g} triangles, expected at most {:.0e}",
+                                 options.refine, refined, most_elements));
+  }
+  for (int level = 0; level < options.refine; ++level) mesh = refine_uniform(mesh);
+  return mesh;
+}
+
+CurvedMesh with_curves(const MeshOptions& options, const GenerateOptions& g,
+                       const Context& context) {
+  if (std::find(shapes.begin(), shapes.end(), options.shape) != shapes.end())
+    throw UsageError("--curve: expected 'curves' or a file with a straight mesh, found '" +
+                     options.shape + "'");
+  for (const auto& [value, option] : {std::pair{&options.width, "--width"},
+                                      {&options.height, "--height"},
+                                      {&options.radius, "--radius"},
+                                      {&options.inner_radius, "--inner-radius"}})
+    refuse(*value, option, "mesh with curves");
+  if (options.refine > 0) throw UsageError("--refine does not apply to a mesh with curves");
+  MeshCurvesOptions how = options.curves;
+  how.mesh = options.shape;
+  how.domain.size = g.size;
+  how.domain.seed = g.seed;
+  how.curved.degree = g.degree;
+  return mesh_with_curves(how, context);
+}
+
 int run(const MeshOptions& options, const Context& context) {
   GenerateOptions g = options.generate;
   g.seed = context.seed;
@@ -61,27 +100,28 @@ int run(const MeshOptions& options, const Context& context) {
   how.format = options.format ? options.format : format_of(options.out);
   require_writable(options.out);
 
-  TriangleMesh mesh = generate(options, g);
-  const double refined = std::ldexp(static_cast<double>(mesh.element_count()), 2 * options.refine);
-  if (refined > most_elements) {
-    throw InputError(fmt::format("--refine {} would give {:.3g} triangles, expected at most {:.0e}",
-                                 options.refine, refined, most_elements));
-  }
-  for (int level = 0; level < options.refine; ++level) mesh = refine_uniform(mesh);
+  std::optional<Json> curved;
+  TriangleMesh mesh = [&] {
+    if (options.curves.files.empty()) return generated(options, g);
+    CurvedMesh found = with_curves(options, g, context);
+    curved = curved_mesh_json(found, options.curves.method);
+    return std::move(found.mesh);
+  }();
   Dataset data;
   data.mesh = std::make_shared<const TriangleMesh>(std::move(mesh));
   const std::vector<std::string> lost = write(options.out, data, how);
   notes(context, options.out, lost);
   if (context.json) {
-    print_or_remove(to_text(Json{{"schema", "bezel/mesh/1"},
-                                 {"output", options.out},
-                                 {"shape", options.shape},
-                                 {"seed", context.seed},
-                                 {"geometric_degree", data.mesh->degree()},
-                                 {"vertices", data.mesh->vertex_count()},
-                                 {"elements", data.mesh->element_count()},
-                                 {"lost", lost}}),
-                    {options.out});
+    Json object{{"schema", "bezel/mesh/1"},
+                {"output", options.out},
+                {"shape", options.shape},
+                {"seed", context.seed},
+                {"geometric_degree", data.mesh->degree()},
+                {"vertices", data.mesh->vertex_count()},
+                {"elements", data.mesh->element_count()},
+                {"lost", lost}};
+    if (curved) object.update(*curved);
+    print_or_remove(to_text(object), {options.out});
   }
   return ok;
 }
@@ -94,9 +134,11 @@ void add_mesh(CLI::App& app, Context& context) {
   CLI::App* command =
       add_command(app, context, "mesh", "Mesh a simple shape",
                   "bezel mesh disc --radius 1 --degree 3 --size 0.3 -o disc.msh", options, run);
-  command->add_option("SHAPE", o.shape, "square, rectangle, disc, annulus or lshape")
+  command
+      ->add_option("SHAPE", o.shape,
+                   "square, rectangle, disc, annulus or lshape; with --curve: 'curves' for the "
+                   "region they bound, or a file with a straight mesh")
       ->required()
-      ->check(CLI::IsMember({"square", "rectangle", "disc", "annulus", "lshape"}))
       ->type_name("");
   command->add_option("-o,--output", o.out, "File to write")->required()->type_name("FILE");
   command->add_option("--degree", o.generate.degree, "Geometric degree, 1 to 10")
@@ -122,6 +164,29 @@ void add_mesh(CLI::App& app, Context& context) {
       ->type_name("R");
   command->add_option("--center", o.centre, "Centre of the shape")
       ->type_name("X,Y")
+      ->capture_default_str();
+  CLI::Option* curve =
+      command
+          ->add_option("--curve", o.curves.files,
+                       "JSON file with curves that boundary edges follow; may be repeated")
+          ->allow_extra_args(false)
+          ->type_name("FILE");
+  command->add_option("--method", o.curves.method, "How edges interpolate their curves")
+      ->needs(curve)
+      ->check(CLI::IsMember(edge_methods))
+      ->type_name("METHOD")
+      ->capture_default_str();
+  command
+      ->add_option("--turn", o.curves.domain.turn,
+                   "Most by which a curve may turn along one edge, in radians ('curves')")
+      ->needs(curve)
+      ->type_name("ANGLE")
+      ->capture_default_str();
+  command
+      ->add_option("--curve-tolerance", o.curves.curved.tolerance,
+                   "How far vertices of a file may be from their curves, as a part of the diagonal")
+      ->needs(curve)
+      ->type_name("PART")
       ->capture_default_str();
   add_format_option(*command, o.format, "--format", "Format; default: by the extension");
 }

@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 
 #include "bezel/base/error.hpp"
 #include "bezel/bernstein/index.hpp"
 #include "bezel/io/cursor.hpp"
-#include "cli/json_text.hpp"
+#include "cli/json_fields.hpp"
 #include "cli/polynomials.hpp"
 
 namespace bezel::cli {
@@ -17,16 +16,23 @@ namespace {
 
 using Kind = JsonValue::Kind;
 
-class Reader {
+class Reader : private JsonFields {
  public:
-  Reader(const std::string& file, const JsonValue& root) : file_(file), root_(root) {}
+  Reader(const std::string& file, const JsonValue& root) : JsonFields(file), root_(root) {}
 
   Shapes read() {
+    read_root();
+    out_.rounded = rounded();
+    return std::move(out_);
+  }
+
+ private:
+  void read_root() {
     if (root_.kind != Kind::object)
       fail(root_, "", fmt::format("found {}, expected an object", described(root_)));
     if (root_.find("a") || root_.find("b")) {  // one pair
       read_pair(root_, "");
-      return std::move(out_);
+      return;
     }
     check_keys(root_, "", {"curves", "triangles", "pairs", "a", "b"});
     if (root_.items.size() != 1)
@@ -42,10 +48,8 @@ class Reader {
     } else {
       read_list(list, key == "triangles");
     }
-    return std::move(out_);
   }
 
- private:
   void read_list(const JsonValue& list, bool triangle) {
     const std::size_t n = list.items.size(), least = triangle ? 2 : 1;
     if (n < least || n > most_shapes)
@@ -93,7 +97,7 @@ class Reader {
       fail(item, where, "expected one of the keys \"curve\" and \"triangle\"");
     Shape shape;
     shape.triangle = curve == nullptr;
-    shape.control = coordinates(curve ? *curve : *triangle, where);
+    shape.control = plane_points(curve ? *curve : *triangle, where);
     finish(shape, item, where);
   }
 
@@ -117,41 +121,12 @@ class Reader {
   }
 
   /// [[x, ...], [y, ...]]
-  std::vector<Vec2> coordinates(const JsonValue& lists, const std::string& where) {
-    constexpr const char* form = "expected [[x, ...], [y, ...]]";
-    if (lists.kind != Kind::array)
-      fail(lists, where, fmt::format("found {}, {}", described(lists), form));
-    if (lists.items.size() != 2)
-      fail(lists, where, fmt::format("found an array of {}, {}", lists.items.size(), form));
-    for (const JsonValue& list : lists.items)
-      if (list.kind != Kind::array)
-        fail(list, where, fmt::format("found {}, {}", described(list), form));
-    const JsonValue &x = lists.items[0], &y = lists.items[1];
-    if (x.items.size() != y.items.size())
-      fail(lists, where,
-           fmt::format("found {} x and {} y coordinates, expected as many", x.items.size(),
-                       y.items.size()));
+  std::vector<Vec2> plane_points(const JsonValue& lists, const std::string& where) {
+    const std::vector<std::vector<double>> columns = coordinates(lists, where, 2, 2);
     std::vector<Vec2> out;
-    for (std::size_t i = 0; i < x.items.size(); ++i) {
-      const std::string place = fmt::format("{}, point {}", where, i);
-      out.push_back(Vec2{{number(x.items[i], place + ", x"), number(y.items[i], place + ", y")}});
-    }
+    for (std::size_t i = 0; i < columns[0].size(); ++i)
+      out.push_back(Vec2{{columns[0][i], columns[1][i]}});
     return out;
-  }
-
-  double number(const JsonValue& value, const std::string& where) {
-    double x = value.number;
-    if (value.kind == Kind::string) {
-      bool rounded = false;
-      if (parse_number(value.text, x, rounded)) {
-        if (rounded) ++out_.rounded;
-        return x;
-      }
-    } else if (value.kind == Kind::number) {
-      if (std::isfinite(x)) return x;
-      fail(value, where, "found a number beyond the range of doubles, expected a finite one");
-    }
-    fail(value, where, fmt::format("found {}, expected {}", described(value), number_forms));
   }
 
   /// Degree and name, and whether the number of control points is right.
@@ -166,14 +141,7 @@ class Reader {
       return static_cast<std::size_t>(bernstein::simplex_size(shape.triangle ? 2 : 1, degree));
     };
     if (const JsonValue* degree = item.find("degree")) {
-      if (degree->kind != Kind::number || !(degree->number >= least && degree->number <= most) ||
-          degree->number != std::floor(degree->number))
-        fail(*degree, where,
-             fmt::format("degree: found {}, expected a whole number from {} to {}",
-                         degree->kind == Kind::number ? fmt::format("{}", degree->number)
-                                                      : described(*degree),
-                         least, most));
-      shape.degree = static_cast<int>(degree->number);
+      shape.degree = whole(*degree, where, "degree", least, most);
       if (n != size(shape.degree))
         fail(item, where,
              fmt::format("found {} control points, expected {} for degree {}", n,
@@ -192,9 +160,8 @@ class Reader {
     }
     if (shape.triangle) check_extent(shape.control, item, where);
     if (const JsonValue* name = item.find("name")) {
-      if (name->kind != Kind::string)
-        fail(*name, where, fmt::format("name: found {}, expected a string", described(*name)));
-      if (!name->text.empty()) shape.name = files::shown(name->text);
+      const std::string& text = string(*name, where, "name");
+      if (!text.empty()) shape.name = files::shown(text);
     }
     out_.shapes.push_back(std::move(shape));
   }
@@ -221,36 +188,6 @@ class Reader {
                        extent));
   }
 
-  void check_object(const JsonValue& value, const std::string& where) const {
-    if (value.kind != Kind::object)
-      fail(value, where, fmt::format("found {}, expected an object", described(value)));
-  }
-  void check_keys(const JsonValue& object, const std::string& where,
-                  std::initializer_list<const char*> known) const {
-    for (std::size_t i = 0; i < object.keys.size(); ++i)
-      if (std::none_of(known.begin(), known.end(),
-                       [&](const char* key) { return object.keys[i] == key; }))
-        fail(object.items[i], where,
-             fmt::format("unknown key \"{}\", expected {}", files::shown(object.keys[i]),
-                         listed(known)));
-  }
-  static std::string listed(std::initializer_list<const char*> words) {
-    std::string text;
-    for (const char* word : words) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", word);
-    return text;
-  }
-  const JsonValue& required(const JsonValue& object, const std::string& where,
-                            const char* key) const {
-    const JsonValue* value = object.find(key);
-    if (!value) fail(object, where, fmt::format("the key \"{}\" is missing", key));
-    return *value;
-  }
-  [[noreturn]] void fail(const JsonValue& at, const std::string& where,
-                         const std::string& message) const {
-    throw InputError(InputPlace{file_, at.line, where, -1}, message);
-  }
-
-  const std::string& file_;
   const JsonValue& root_;
   Shapes out_;
 };

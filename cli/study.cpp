@@ -15,6 +15,7 @@ struct StudyOptions {
 int run(const StudyOptions& options, const Context& context) {
   if (options.name == "compensated") return run_study_compensated(options.out, context.json);
   if (options.name == "newton") return run_study_newton(options.out, context.json);
+  if (options.name == "curves") return run_study_curves(options.out, options.quick, context.json);
   return run_study_transfer(options.out, options.quick, context.json);
 }
 
@@ -29,9 +30,9 @@ void add_study(CLI::App& app, Context& context) {
       ->add_option("NAME", options->name,
                    "transfer: errors and orders of transfers from a square to a disc; compensated: "
                    "polynomials evaluated near multiple roots; newton: ill-conditioned roots and "
-                   "intersections by Newton's method")
+                   "intersections by Newton's method; curves: interpolation of curves in the plane")
       ->required()
-      ->check(CLI::IsMember({"transfer", "compensated", "newton"}))
+      ->check(CLI::IsMember({"transfer", "compensated", "newton", "curves"}))
       ->type_name("");
   command->add_option("-o,--output", options->out, "Folder for tables and plots")
       ->required()

@@ -20,4 +20,8 @@ int run_study_compensated(const std::string& out_dir, bool json);
 /// almost tangent intersections, the false start. Output as above.
 int run_study_newton(const std::string& out_dir, bool json);
 
+/// Interpolation of curves [bjontegaard2009, sec. 2.6]: figures 6 to 17, distances, iterations and
+/// times. Output as above. @param quick  degrees up to 16 only
+int run_study_curves(const std::string& out_dir, bool quick, bool json);
+
 }  // namespace bezel::cli

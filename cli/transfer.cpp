@@ -5,6 +5,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "bezel/base/atomic_file.hpp"
@@ -19,17 +21,51 @@ namespace bezel::cli {
 namespace {
 
 struct TransferCommand {
-  std::string donor, target, out, report, uncovered = "error", continuity = "dg";
+  std::string donor, target, out, report, uncovered = "error", conserve = "covered",
+                                          continuity = "dg", bounds = "none";
   std::string weight, density, matrix;
   std::vector<std::string> fields;
   std::optional<int> degree;
   Basis basis = Basis::reference;
   CLI::Option* basis_given = nullptr;
+  bool keep_boundary = false;
+  std::string mass_method = "auto";
   std::optional<Format> format;
 };
 
 Json or_null(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json(text);
+}
+
+constexpr std::array<const char*, 4> method_names = {"auto", "cholesky", "conjugate_gradients",
+                                                     "petsc"};
+const char* method_name(MassMethod method) {
+  return method_names[static_cast<std::size_t>(method)];
+}
+
+MassMethod method_named(const std::string& name) {
+  const auto at = std::find(method_names.begin(), method_names.end(), name);
+  return static_cast<MassMethod>(at - method_names.begin());
+}
+
+Bounds parse_bounds(const std::string& text) {
+  if (text == "none") return {};
+  if (text == "local") return Bounds::local();
+  const auto comma = text.find(',');
+  if (comma != std::string::npos) {
+    // An open side is written inf.
+    const auto number = [](const std::string& part, double open) {
+      return part == (open > 0 ? "inf" : "-inf") ? std::optional(open) : parse_number(part);
+    };
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const auto lo = number(text.substr(0, comma), -infinity);
+    const auto hi = number(text.substr(comma + 1), infinity);
+    if (lo && hi && *lo <= *hi) return Bounds::between(*lo, *hi);
+  }
+  throw UsageError(
+      "--bounds: expected two ascending numbers such as 0,1 or 0,inf, or local or none, "
+      "found '" +
+      text + "'");
 }
 
 Json to_json(const TransferCommand& options, const TransferReport& r) {
@@ -44,12 +80,23 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
                       {"mass_after", f.mass_after},
                       {"mass_outside", f.mass_outside},
                       {"mass_made", f.mass_made},
+                      {"mass_spread", f.mass_spread},
+                      {"max_spread_change", f.max_spread_change},
                       {"relative_mass_defect", f.relative_mass_defect},
                       {"max_element_defect", f.max_element_defect},
                       {"min_before", f.min_before},
                       {"max_before", f.max_before},
                       {"min", f.min_after},
-                      {"max", f.max_after}});
+                      {"max", f.max_after},
+                      {"elements_limited", f.bounds.elements_limited},
+                      {"mass_moved", f.bounds.mass_moved}});
+    if (!f.mass_solve) continue;
+    const MassSolve& solve = *f.mass_solve;
+    fields.back()["mass_solve"] = {{"dofs", solve.dofs},
+                                   {"method", method_name(solve.method)},
+                                   {"iterations", solve.iterations},
+                                   {"relative_residual", solve.relative_residual},
+                                   {"boundary_mass_change", solve.boundary_mass_change}};
   }
   Json uncovered = Json::array();
   for (const auto& part : r.uncovered_elements)
@@ -61,6 +108,7 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
               {"matrix", or_null(options.matrix)},
               {"weight", or_null(options.weight)},
               {"density", or_null(options.density)},
+              {"bounds", options.bounds},
               {"fields", fields},
               {"mass_outside", outside},
               {"mass_made", made},
@@ -71,6 +119,7 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
               {"unresolved", r.unresolved},
               {"uncovered_area", r.uncovered_area},
               {"outside_area", r.outside_area},
+              {"spread_elements", r.spread_elements},
               {"uncovered_elements", uncovered},
               {"max_partition_residual", r.max_partition_residual},
               {"max_joint_gap", r.max_joint_gap},
@@ -81,7 +130,7 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
                 {"solve", r.seconds.solve}}}};
 }
 
-std::string to_table(const TransferReport& r) {
+std::string to_table(const TransferReport& r, const TransferCommand& options) {
   std::size_t width = 5;
   const auto label = [](const FieldReport& f, bool several) {
     return several ? fmt::format("{}[{}]", f.name, f.component) : f.name;
@@ -102,9 +151,32 @@ std::string to_table(const TransferReport& r) {
         labels[i], width, f.mass_before, f.mass_after, f.mass_outside, f.mass_made,
         f.relative_mass_defect, f.min_after, f.max_after);
   }
+  if (options.bounds != "none") {
+    std::int64_t limited = 0;
+    for (const FieldReport& f : r.fields) limited += f.bounds.elements_limited;
+    text += fmt::format("bounds {}: {} limited", options.bounds,
+                        counted(static_cast<std::size_t>(limited), "polynomial"));
+    for (std::size_t i = 0; i < labels.size(); ++i)
+      text += fmt::format("{} mass moved for {}: {:.3g}", i == 0 ? ";" : ",", labels[i],
+                          r.fields[i].bounds.mass_moved);
+    text += "\n";
+  }
   text +=
       fmt::format("overlay: {} pairs, {} crossings, {} tangencies, {} overlaps, {} unresolved\n",
                   r.pairs, r.crossings, r.tangencies, r.overlaps, r.unresolved);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (!r.fields[i].mass_solve) continue;
+    const MassSolve& solve = *r.fields[i].mass_solve;
+    text += fmt::format("{:<{}}  {} degrees of freedom, {}, residual {:.1e}", labels[i], width,
+                        solve.dofs,
+                        solve.method == MassMethod::cholesky
+                            ? std::string("sparse Cholesky")
+                            : counted(static_cast<std::size_t>(solve.iterations), "iteration"),
+                        solve.relative_residual);
+    if (options.keep_boundary)
+      text += fmt::format(", mass changed by {:.3g} for the boundary", solve.boundary_mass_change);
+    text += "\n";
+  }
   text += fmt::format("largest partition residual {:.1e}, largest joint gap {:.1e}\n",
                       r.max_partition_residual, r.max_joint_gap);
   if (r.uncovered_area > 0) {
@@ -113,6 +185,13 @@ std::string to_table(const TransferReport& r) {
   }
   if (r.outside_area > 0) {
     text += fmt::format("donor area without target {:.6g}\n", r.outside_area);
+  }
+  if (r.spread_elements > 0) {
+    double change = 0;
+    for (const FieldReport& f : r.fields) change = std::max(change, f.max_spread_change);
+    text += fmt::format(
+        "total mass kept: values in {} at the boundary changed by up to {:.3g}, constants too\n",
+        counted(static_cast<std::size_t>(r.spread_elements), "triangle"), change);
   }
   return text;
 }
@@ -129,6 +208,35 @@ void write_all(const TransferCommand& options, const Dataset& data, const WriteO
   files.commit();
 }
 
+void check_usage(const TransferCommand& options) {
+  const bool weighted = !options.weight.empty() || !options.density.empty();
+  if (!options.matrix.empty() && weighted)
+    throw UsageError("--matrix: not with --weight or --density");
+  if ((!options.matrix.empty() || weighted) &&
+      (options.continuity == "cg" || options.bounds != "none" || options.conserve != "covered")) {
+    throw UsageError(std::string(weighted ? "--weight and --density" : "--matrix") +
+                     ": not with --continuity cg, --bounds or --conserve total");
+  }
+  if (options.continuity != "cg") {
+    if (options.keep_boundary) throw UsageError("--keep-boundary needs --continuity cg");
+    if (options.mass_method != "auto") throw UsageError("--mass-method needs --continuity cg");
+    return;
+  }
+  if (options.keep_boundary && options.bounds != "none") {
+    throw UsageError(
+        "--bounds: not with --keep-boundary: bounds need the freedom that kept boundary "
+        "values take");
+  }
+  if (options.basis_given->count() > 0 && options.basis == Basis::physical) {
+    throw UsageError(
+        "--basis physical: not with --continuity cg: along a curved edge a polynomial in x and y "
+        "has a higher degree than the edge has coefficients");
+  }
+  if (options.degree == 0) throw UsageError("--degree 0: --continuity cg needs at least 1");
+  if (!is_available(method_named(options.mass_method)))
+    throw UsageError("--mass-method petsc: this build of bezel has no PETSc");
+}
+
 TransferOptions transfer_options(const TransferCommand& options, const Context& context) {
   TransferOptions how_to;
   how_to.degree = options.degree.value_or(-1);
@@ -143,6 +251,12 @@ TransferOptions transfer_options(const TransferCommand& options, const Context& 
     how_to.weight = weight.front();
   }
   how_to.density = options.density;
+  how_to.conserve = options.conserve == "total" ? Conserve::total : Conserve::covered;
+  how_to.bounds = parse_bounds(options.bounds);
+  how_to.continuity =
+      options.continuity == "cg" ? Continuity::continuous : Continuity::discontinuous;
+  how_to.keep_boundary = options.keep_boundary;
+  how_to.mass_method = method_named(options.mass_method);
   how_to.threads = context.threads;
   return how_to;
 }
@@ -163,9 +277,8 @@ TransferResult move(const TransferCommand& options, std::span<const Field> field
 }
 
 int run(const TransferCommand& options, const Context& context) {
+  check_usage(options);
   const TransferOptions how_to = transfer_options(options, context);
-  if (!options.matrix.empty() && (how_to.weight || !how_to.density.empty()))
-    throw UsageError("--matrix: not with --weight or --density");
   if (is_collection(options.donor) || is_collection(options.out)) {
     if (!options.matrix.empty()) throw UsageError("--matrix: not with a time series");
     if (options.format && options.format != Format::vtu)
@@ -202,7 +315,7 @@ int run(const TransferCommand& options, const Context& context) {
   for (const std::string& file : {options.report, options.matrix}) {
     if (!file.empty()) files.push_back(file);
   }
-  print_or_remove(context.json ? to_text(report) : to_table(result.report), files);
+  print_or_remove(context.json ? to_text(report) : to_table(result.report, options), files);
   if (!context.json && context.verbose > 0) {
     const auto& s = result.report.seconds;
     note(context, fmt::format("{:.3g} s: overlay {:.3g}, integrate {:.3g}, solve {:.3g}", s.total,
@@ -235,9 +348,21 @@ void add_transfer(CLI::App& app, Context& context) {
   o.basis_given = add_basis_option(
       *command, o.basis,
       "reference (mapped) or physical (polynomials in x and y); default: each field's own");
-  command->add_option("--continuity", o.continuity, "dg: the new fields are discontinuous")
-      ->check(CLI::IsMember({"dg"}))
+  command
+      ->add_option("--continuity", o.continuity,
+                   "dg: the new fields are discontinuous; cg: continuous (reference basis)")
+      ->check(CLI::IsMember({"dg", "cg"}))
       ->type_name("CONTINUITY")
+      ->capture_default_str();
+  command->add_flag(
+      "--keep-boundary", o.keep_boundary,
+      "With --continuity cg: the boundary takes the donor's values; mass changes a little");
+  command
+      ->add_option("--mass-method", o.mass_method,
+                   "With --continuity cg: auto, cholesky, conjugate_gradients, or petsc in builds "
+                   "that have it")
+      ->check(CLI::IsMember(std::vector<std::string>(method_names.begin(), method_names.end())))
+      ->type_name("METHOD")
       ->capture_default_str();
   command
       ->add_option("--uncovered", o.uncovered,
@@ -259,6 +384,18 @@ void add_transfer(CLI::App& app, Context& context) {
       ->add_option("--matrix", o.matrix,
                    "Write the transfer as a sparse matrix there too (Matrix Market)")
       ->type_name("FILE");
+  ->add_option("--conserve", o.conserve,
+               "Which mass is kept: covered (before - outside + made) or total (the difference "
+               "goes to triangles at the boundary; constants change there)")
+      ->check(CLI::IsMember({"covered", "total"}))
+      ->type_name("WHAT")
+      ->capture_default_str();
+  command
+      ->add_option("--bounds", o.bounds,
+                   "Keep every value within LO,HI (inf: open), or within the donor's values nearby "
+                   "(local)")
+      ->type_name("LO,HI|local|none")
+      ->capture_default_str();
   command->add_option("--report", o.report, "Write the report there as JSON too")
       ->type_name("FILE");
   add_format_option(*command, o.format, "--format",

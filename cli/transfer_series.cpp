@@ -153,7 +153,8 @@ int transfer_series(const SeriesFiles& files, const TransferOptions& options,
           naming_files(file, files.target, [&] { return series.step(fields, comes_again, part); });
       tell(part, 1.0);
       Json entry = describe(moved.report);
-      for (const char* key : {"schema", "donor", "target", "output", "matrix", "weight", "density"})
+      for (const char* key :
+           {"schema", "donor", "target", "output", "matrix", "weight", "density", "bounds"})
         entry.erase(key);
       Json step = {{"time", steps[i].time}, {"donor", file}, {"output", written[i].file}};
       step.update(entry);

@@ -13,15 +13,16 @@
 
 namespace bezel::bernstein {
 
-/// Upper bound of the maximum of the polynomial b, within tol and rounding of it, or the bound so
-/// far after max_splits splits. `corners` are the coefficients that are values; split(depth, b)
-/// gives the children of a piece, as a range of vectors.
+/// Upper bound of the maximum of the polynomial b: the first for which enough(bound, attained)
+/// holds, where the maximum lies in [attained, bound], or the bound so far after max_splits splits.
+/// `corners` are the coefficients that are values; split(depth, b) gives the children of a piece,
+/// as a range of vectors.
 ///
 /// A split by halves may round each coefficient `roundings` times by at most u |result| <= u M
 /// (halving is exact, or off by 2^-1075 when subnormal), M the largest |coefficient|, up to a
 /// relative 2^-40 for second-order terms: at depth n a coefficient is off by n times that.
-template <class Split>
-double upper_bound_by_splitting(int roundings, std::vector<double> b, double tol,
+template <class Enough, class Split>
+double upper_bound_by_splitting(int roundings, std::vector<double> b, const Enough& enough,
                                 std::span<const std::size_t> corners, int max_depth, int max_splits,
                                 const Split& split) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -52,12 +53,18 @@ double upper_bound_by_splitting(int roundings, std::vector<double> b, double tol
   add(std::move(b), 0);
   for (int splits = 0;; ++splits) {
     const Piece piece = queue.top();
-    if (piece.bound <= attained + tol || piece.depth >= max_depth || splits >= max_splits)
+    if (enough(piece.bound, attained) || piece.depth >= max_depth || splits >= max_splits)
       return piece.bound;
     queue.pop();
     for (std::vector<double>& child : split(piece.depth, piece.b))
       add(std::move(child), piece.depth + 1);
   }
 }
+
+/// What range() asks of a bound: the maximum lies at most tol below it.
+struct WithinTolerance {
+  double tol;
+  bool operator()(double bound, double attained) const { return bound <= attained + tol; }
+};
 
 }  // namespace bezel::bernstein

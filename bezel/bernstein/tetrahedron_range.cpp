@@ -40,7 +40,8 @@ Range range(int d, std::span<const double> b, double tol) {
                                            static_cast<std::size_t>(tetrahedron_corner(d, 2)),
                                            b.size() - 1};
   const auto upper_bound = [&](std::vector<double> c) {
-    return upper_bound_by_splitting(d, std::move(c), tol, corners, max_depth, max_splits, split);
+    return upper_bound_by_splitting(d, std::move(c), WithinTolerance{tol}, corners, max_depth,
+                                    max_splits, split);
   };
   std::vector<double> negated(b.begin(), b.end());
   for (double& c : negated) c = -c;

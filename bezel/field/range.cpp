@@ -9,6 +9,7 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/field/element_kernel.hpp"
+#include "bezel/field/element_range.hpp"
 #include "bezel/field/field.hpp"
 
 namespace bezel {
@@ -208,6 +209,17 @@ ReferencePolynomial reference_polynomial(const Field& field, ElementId e, int co
   return {d * g, std::move(layer[0]), bound};
 }
 
+Range element_range(const Field& field, ElementId e, int component, double tol) {
+  check_component(field, component);
+  if (!(tol >= 0.0)) throw InputError(fmt::format("found tolerance {}, expected at least 0", tol));
+  (void)field.coefficients(e);  // checks e
+  if (!composable(field, e))
+    return piece_bounds(field, e, component).range(field.mesh().gather(e), tol);
+  const ReferencePolynomial p = reference_polynomial(field, e, component);
+  const Range range = bernstein::range(p.degree, p.c, tol);
+  return {range.lo - p.error_bound, range.hi + p.error_bound};
+}
+
 Range value_range(const Field& field, int component, double rel_tol) {
   check_component(field, component);
   if (!(rel_tol >= 0.0 && rel_tol <= 1.0))
@@ -247,15 +259,7 @@ Range value_range(const Field& field, int component, double rel_tol) {
     if (known[e].lo < all.attained_lo || known[e].hi > all.attained_hi) open.push_back(e);
   std::vector<Range> sharp(open.size());
   parallel_for(open.size(), [&](std::size_t i) {
-    const ElementId e(open[i]);
-    if (composable(field, e)) {
-      const ReferencePolynomial p = reference_polynomial(field, e, component);
-      sharp[i] = bernstein::range(p.degree, p.c, tol);
-      sharp[i].lo -= p.error_bound;
-      sharp[i].hi += p.error_bound;
-    } else {
-      sharp[i] = piece_bounds(field, e, component).range(mesh.gather(e), tol);
-    }
+    sharp[i] = element_range(field, ElementId(open[i]), component, tol);
   });
   // Certified without slack: the elements left out have their bounds inside, the others add theirs.
   Range result{all.attained_lo, all.attained_hi};

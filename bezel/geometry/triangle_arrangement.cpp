@@ -112,6 +112,12 @@ int entering(int k) {
   return k == 0 ? -1 : 1;
 }
 
+/// The side of triangle k on which a contact was found.
+int side_of(const BoundaryJoint& contact, std::size_t k) {
+  const int edge = contact.place[k].edge;
+  return contact.seen[k] == 2 ? (edge + 2) % 3 : edge;
+}
+
 Box2 part_box(const CurveCache& side, double s0, double s1) {
   PointBuffer<max_curve_points> points;
   const int d = static_cast<int>(side.control.size()) - 1;
@@ -145,6 +151,8 @@ bool Arrangement::build(const TriangleSides& a, const TriangleSides& b,
                         double coincidence_distance) {
   sides_ = {&a, &b};
   joints_.clear();
+  contacts_.clear();
+  same_joint_.clear();
   overlaps_.clear();
   parts_[0].clear();
   parts_[1].clear();
@@ -173,6 +181,7 @@ bool Arrangement::build(const TriangleSides& a, const TriangleSides& b,
     }
     return true;
   }
+  separate_contacts();
   settle_corners();
   return sort_joints() && classify(0) && classify(1);
 }
@@ -261,6 +270,14 @@ bool Arrangement::add_contact(const BoundaryJoint& contact) {
     joints_.push_back(contact);
     return true;
   }
+  const auto name = static_cast<std::int32_t>(contacts_.size());
+  contacts_.push_back(contact);
+  same_joint_.push_back(-1);
+  const auto last_contact = [&](const BoundaryJoint& joint) {
+    std::int32_t i = joint.first_contact;
+    while (same_joint_[at(i)] >= 0) i = same_joint_[at(i)];
+    return i;
+  };
   std::size_t first = joints_.size();
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     BoundaryJoint& joint = joints_[i];
@@ -271,8 +288,10 @@ bool Arrangement::add_contact(const BoundaryJoint& contact) {
     if (!one) continue;
     if (first == joints_.size()) {
       first = i;
+      same_joint_[at(last_contact(joint))] = name;
       if (!join(joint, contact)) return false;
     } else {  // two joints seen apart so far turn out to be one
+      same_joint_[at(last_contact(joints_[first]))] = joint.first_contact;
       if (!join(joints_[first], joint)) return false;
       joints_.erase(joints_.begin() + static_cast<std::ptrdiff_t>(i--));
     }
@@ -280,6 +299,7 @@ bool Arrangement::add_contact(const BoundaryJoint& contact) {
   if (first == joints_.size()) {
     joints_.push_back(contact);
     BoundaryJoint& joint = joints_.back();
+    joint.first_contact = name;
     for (int k = 1; k >= 0; --k)
       if (is_corner(joint.place[at(k)])) joint.point = sides(k).corner(joint.place[at(k)].edge);
   }
@@ -313,6 +333,52 @@ bool Arrangement::join(BoundaryJoint& joint, const BoundaryJoint& contact) {
     return fail("a corner seems to meet the other boundary in two places", where);
   }
   return true;
+}
+
+/// Crossings so near to a corner that they are rounded to it are joints of their own: a corner on
+/// the other boundary is met by both its sides, on one side of the other triangle. (As one joint,
+/// the boundaries would cross an odd number of times, which closed curves cannot.)
+void Arrangement::separate_contacts() {
+  const std::size_t count = joints_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const BoundaryJoint joint = joints_[i];
+    if (joint.sign != 0 || same_joint_[at(joint.first_contact)] < 0) continue;
+    if (joint.seen[0] == 3 && joint.seen[1] == 3) continue;
+    bool crossings = true;
+    std::array<std::array<std::uint8_t, 3>, 2>
+        met{};  // of a corner, per side of the other triangle
+    for (std::int32_t c = joint.first_contact; c >= 0; c = same_joint_[at(c)]) {
+      const BoundaryJoint& contact = contacts_[at(c)];
+      crossings = crossings && contact.seen_sign != 0;
+      for (const std::size_t k : {0U, 1U}) met[k][at(side_of(contact, 1 - k))] |= contact.seen[k];
+    }
+    if (!crossings) continue;
+    std::size_t corner = 2;  // the triangle whose corner is on the other's side `on`
+    int on = 0;
+    for (const std::size_t k : {0U, 1U})
+      for (int side = 0; side < 3 && corner == 2; ++side)
+        if (met[k][at(side)] == 3) {
+          corner = k;
+          on = side;
+        }
+    bool first = true, first_kept = true;
+    for (std::int32_t c = joint.first_contact, next; c >= 0; c = next) {
+      next = same_joint_[at(c)];
+      const BoundaryJoint& contact = contacts_[at(c)];
+      const bool keep = corner < 2 && side_of(contact, 1 - corner) == on;
+      if (keep && first_kept) {
+        joints_[i] = contact;
+        joints_[i].seen[corner] = 3;
+        joints_[i].point = sides(static_cast<int>(corner)).corner(contact.place[corner].edge);
+        first_kept = false;
+      } else if (!keep && corner == 2 && first) {
+        joints_[i] = contact;
+      } else if (!keep) {
+        joints_.push_back(contact);
+      }
+      first = false;
+    }
+  }
 }
 
 /// A corner on the other boundary is met by both sides that end there. What only one of them meets

@@ -45,6 +45,7 @@ struct BoundaryJoint {
   std::array<std::uint8_t, 2> seen;  ///< corners: from its side's start (1), its side's end (2)
   std::array<double, 2> error;       ///< of the computed parameters
   int seen_sign;                     ///< of the crossing at a corner
+  std::int32_t first_contact;        ///< of the contacts that it joins, those that may be apart
 };
 
 enum class PartClass : std::uint8_t { inside, outside, along, against };
@@ -83,6 +84,7 @@ class Arrangement {
   bool add_contact(const BoundaryJoint& contact);
   bool join(BoundaryJoint& joint, const BoundaryJoint& contact);
   const BoundaryJoint& joint(std::int32_t i) const { return joints_[static_cast<std::size_t>(i)]; }
+  void separate_contacts();
   void settle_corners();
   bool sort_joints();
   void tighten(std::int32_t i);
@@ -102,6 +104,8 @@ class Arrangement {
 
   std::array<const TriangleSides*, 2> sides_{};
   std::vector<BoundaryJoint> joints_;
+  std::vector<BoundaryJoint> contacts_;   ///< at corners, as they were found
+  std::vector<std::int32_t> same_joint_;  ///< per contact the next one of its joint, or -1
   std::vector<SideOverlap> overlaps_;
   std::array<std::vector<std::int32_t>, 2> order_;  ///< joints along each boundary
   std::array<std::vector<BoundaryPart>, 2> parts_;

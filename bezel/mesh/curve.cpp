@@ -1,11 +1,14 @@
 // From straight-sided triangulations to curved meshes.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "bezel/bernstein/index.hpp"
 #include "bezel/geometry/triangle.hpp"
+#include "bezel/mesh/bend.hpp"
 #include "bezel/mesh/planar.hpp"
 #include "bezel/numeric/binomial.hpp"
 #include "bezel/numeric/quadrature.hpp"
@@ -205,10 +208,8 @@ class Curving {
     return a + (b - a) * (static_cast<double>(m) / g_) + shift(edge)[m - 1];
   }
 
-  /// All control points of an element: edges as stored; inner points affine plus, for every bent
-  /// side with displacement s (1-s) eta(s), the extension lambda0 lambda1 eta(lambda1 + lambda2 /
-  /// 2). Its k-th derivatives are O(h^k) when those of the side are, as isoparametric order needs
-  /// [lenoir1986]; extending by zero inner displacements loses that from degree 3 on.
+  /// All control points of an element: edges as stored; inner points affine plus the extension of
+  /// every bent side.
   void gather(ElementId e, std::vector<Vec2>& out) const {
     const auto corner = straight_.nodes(e);
     const auto sides = straight_.edges(e);
@@ -221,7 +222,7 @@ class Curving {
                                                        (p2 - p0) * (static_cast<double>(k) / g_);
     for (int c = 0; c < 3; ++c)
       out[at(bernstein::triangle_corner(g_, c))] = t_.points[corner[at(c)].index()];
-    std::array<Vec2, TriangleMesh::max_degree> eta;
+    std::array<Vec2, TriangleMesh::max_degree> bend;
     for (int s = 0; s < 3; ++s) {
       const std::size_t edge = sides[at(s)].edge.index();
       for (int m = 1; m < g_; ++m)
@@ -229,20 +230,8 @@ class Curving {
             edge_point(edge, sides[at(s)].reversed ? g_ - m : m);
       if (g_ < 3 || !bent(edge)) continue;
       for (int m = 1; m < g_; ++m)
-        eta[at(m - 1)] = shift(edge)[(sides[at(s)].reversed ? g_ - m : m) - 1] *
-                         (g_ * (g_ - 1.0) / (m * (g_ - m)));
-      // (a, b, c): powers at the side's start, its end and the opposite corner. The Bernstein
-      // coefficient of the extension is a b / (g (g-1)) times the blossom of eta at 0 (a-1 times),
-      // 1 (b-1), 1/2 (c).
-      for (int c = 1; c <= g_ - 2; ++c) {
-        for (int b = 0; b < g_ - 1 - c; ++b) eta[at(b)] = 0.5 * (eta[at(b)] + eta[at(b + 1)]);
-        for (int b = 1; b < g_ - c; ++b) {
-          const int a = g_ - b - c;
-          const int j = s == 0 ? b : s == 1 ? a : c, k = s == 0 ? c : s == 1 ? b : a;
-          out[at(bernstein::triangle_index(g_, j, k))] +=
-              (a * b / (g_ * (g_ - 1.0))) * eta[at(b - 1)];
-        }
-      }
+        bend[at(m - 1)] = shift(edge)[(sides[at(s)].reversed ? g_ - m : m) - 1];
+      extend_bend(g_, s, std::span(bend).first(at(g_ - 1)), out);
     }
   }
 

@@ -289,7 +289,7 @@ bool ElementTransfer::moment_factor(const Group& g, std::int32_t t) {
       }
     }
   }
-  return cholesky(functions, factor_);
+  return factorize(functions, factor_);
 }
 
 }  // namespace bezel::detail

@@ -8,23 +8,8 @@
 #include "bezel/transfer/element_kernel.hpp"
 
 namespace bezel::detail {
-namespace {
 
-/// A positive rule on the reference triangle of any degree.
-TriangleRule any_triangle_rule(int degree) {
-  if (degree <= 80) return triangle_rule(degree);
-  const IntervalRule line = gauss_legendre((degree + 3) / 2);
-  TriangleRule rule;
-  for (std::size_t i = 0; i < line.node.size(); ++i) {
-    for (std::size_t j = 0; j < line.node.size(); ++j) {
-      const double u = line.node[i];
-      const double v = (1.0 - u) * line.node[j];
-      rule.lambda.push_back({1.0 - u - v, u, v});
-      rule.weight.push_back(line.weight[i] * line.weight[j] * (1.0 - u));
-    }
-  }
-  return rule;
-}
+namespace {
 
 /// x := scale (L L^T)^-1 x. N: the size when known at compile time.
 template <std::size_t N>
@@ -59,56 +44,18 @@ bool is_same_frame(const std::array<Lambda, 3>& corners, const Frame& frame) {
 
 }  // namespace
 
-const ElementTransfer::MassRule& ElementTransfer::mass_rule(int degree) {
+const MassRule& ElementTransfer::mass_rule(int degree) {
   for (const MassRule& known : mass_rules_) {
     if (known.degree == degree) return known;
   }
-  const TriangleRule points = any_triangle_rule(degree);
-  const int g = target_.degree;
-  MassRule made{degree, {}, {}, {}};
-  std::vector<double> lower(static_cast<std::size_t>(bernstein::triangle_size(g - 1)));
-  std::vector<double> value(target_.element_size);
-  for (std::size_t q = 0; q < points.weight.size(); ++q) {
-    const auto& l = points.lambda[q];
-    made.place.push_back({l[1], l[2]});
-    made.weight.push_back(points.weight[q]);
-    basis_at(g, l[1], l[2], value.data());
-    basis_at(g - 1, l[1], l[2], lower.data());
-    // d/du B_ijk = g (B_{i,j-1,k} - B_{i-1,j,k}), both of degree g-1; the same for v with k.
-    int n = 0;
-    for (int k = 0; k <= g; ++k) {
-      for (int j = 0; j <= g - k; ++j, ++n) {
-        const auto at = [&](int jj, int kk) {
-          return jj < 0 || kk < 0 || jj + kk > g - 1
-                     ? 0.0
-                     : lower[static_cast<std::size_t>(bernstein::triangle_index(g - 1, jj, kk))];
-        };
-        const double first = at(j, k);
-        made.map.push_back({value[static_cast<std::size_t>(n)], g * (at(j - 1, k) - first),
-                            g * (at(j, k - 1) - first)});
-      }
-    }
-  }
-  mass_rules_.push_back(std::move(made));
+  mass_rules_.push_back(make_mass_rule(target_.degree, degree));
   return mass_rules_.back();
 }
 
-bool ElementTransfer::cholesky(std::size_t n, Factor& factor) {
-  std::vector<double>& lower = factor.lower;
+bool ElementTransfer::factorize(std::size_t n, Factor& factor) {
+  if (!cholesky(n, factor.lower)) return false;
   factor.inverse.resize(n);
-  for (std::size_t j = 0; j < n; ++j) {
-    for (std::size_t i = j; i < n; ++i) {
-      double sum = lower[i * n + j];
-      for (std::size_t k = 0; k < j; ++k) sum -= lower[i * n + k] * lower[j * n + k];
-      if (i == j) {
-        if (!(sum > 0.0)) return false;
-        lower[j * n + j] = std::sqrt(sum);
-        factor.inverse[j] = 1.0 / lower[j * n + j];
-      } else {
-        lower[i * n + j] = sum * factor.inverse[j];
-      }
-    }
-  }
+  for (std::size_t i = 0; i < n; ++i) factor.inverse[i] = 1.0 / factor.lower[i * n + i];
   return true;
 }
 
@@ -121,7 +68,7 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
     // A straight triangle's own barycentrics: one matrix for all, times twice the area.
     if (reference_degree_ != p) {
       reference_factor_.lower = bernstein::mass_matrix(p);
-      cholesky(n, reference_factor_);
+      factorize(n, reference_factor_);
       reference_degree_ = p;
     }
     const double area = target_.element_area[static_cast<std::size_t>(t)];
@@ -138,25 +85,17 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
   phi.resize(n);
   const auto control = target_.element(t);
   for (std::size_t q = 0; q < points.weight.size(); ++q) {
-    const std::array<double, 3>* map = points.map.data() + q * target_.element_size;
-    Vec2 x;
-    Vec2 du;
-    Vec2 dv;
-    for (std::size_t i = 0; i < target_.element_size; ++i) {
-      x += control[i] * map[i][0];
-      du += control[i] * map[i][1];
-      dv += control[i] * map[i][2];
-    }
-    const auto place = g.target_mapped ? points.place[q] : target_place(g, t, x);
+    const MassPoint map = mass_point(points, control, q);
+    const auto place = g.target_mapped ? points.place[q] : target_place(g, t, map.x);
     basis_at(p, place[0], place[1], phi.data());
-    const double w = points.weight[q] * cross(du, dv);
+    const double w = points.weight[q] * map.det;
     for (std::size_t i = 0; i < n; ++i) {
       const double wi = w * phi[i];
       f.integrals[i] += wi;
       for (std::size_t j = 0; j <= i; ++j) f.lower[i * n + j] += wi * phi[j];
     }
   }
-  if (!cholesky(n, f)) {
+  if (!factorize(n, f)) {
     throw NumericsError("target triangle " + std::to_string(t) +
                         ": its mass matrix is singular in double precision (degree " +
                         std::to_string(p) + " on a degenerate element)");

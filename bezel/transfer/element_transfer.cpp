@@ -160,24 +160,7 @@ std::array<double, 2> ElementTransfer::target_place(const Group& g, std::int32_t
 std::array<double, 2> ElementTransfer::donor_place(const Group& g, std::int32_t d, const Vec2& x,
                                                    std::array<double, 3>& warm,
                                                    bool& have_warm) const {
-  if (!g.donor_mapped) {
-    const auto lambda = g.donor_frame[static_cast<std::size_t>(d)].lambda(x);
-    return {lambda[1], lambda[2]};
-  }
-  std::array<double, 3> lambda = warm;
-  if (invert_map(donor_.degree, donor_.element(d), x, lambda, have_warm)) {
-    warm = lambda;
-    have_warm = true;
-    return {lambda[1], lambda[2]};
-  }
-  // Outside the reach of the map (a point far outside a curved element): the nearest corner
-  // direction.
-  have_warm = false;
-  const auto corners = donor_.corners(d);
-  const auto guess = affine_frame(corners).lambda(x);
-  const double low = std::min({guess[0], guess[1], guess[2], 0.0});
-  const double total = 1.0 - 3.0 * low;
-  return {(guess[1] - low) / total, (guess[2] - low) / total};
+  return detail::donor_place(g, donor_, d, x, warm, have_warm);
 }
 
 void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
@@ -255,8 +238,8 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
                   });
     flush(g, d, pt, mapped);
     for (std::size_t n = 0; n < functions; ++n) {
-      sums.basis[n] += exact.basis[n];
       const double difference = exact.basis[n] - mapped.basis[n];
+      sums.basis[n] += exact.basis[n];
       for (std::size_t c = 0; c < nc; ++c) {
         sums.product[n * nc + c] +=
             mapped.product[n * nc + c] + donor_mass[c] / donor_area * difference;

@@ -12,6 +12,7 @@
 #include "bezel/field/field.hpp"
 #include "bezel/numeric/quadrature.hpp"
 #include "bezel/transfer/group.hpp"
+#include "bezel/transfer/mass_rule.hpp"
 #include "bezel/transfer/moments.hpp"
 #include "bezel/transfer/overlay.hpp"
 #include "bezel/transfer/transfer.hpp"
@@ -33,6 +34,7 @@ struct ElementOutcome {
 /// entry a pair.
 struct GivenList {
   std::vector<std::int32_t> donor;
+  std::vector<std::int32_t> target;  ///< filled by the caller of process()
   std::vector<double> area;
   std::vector<double> mass;  ///< per entry all groups' components in order
 };
@@ -124,17 +126,8 @@ class ElementTransfer {
   void finish(const Group& g, std::int32_t t, const Accumulators& sums,
               std::span<const double> mass, double area, std::span<double> result,
               ElementOutcome& outcome);
-  /// Quadrature on the target's reference triangle with the basis functions of its map at the
-  /// points.
-  struct MassRule {
-    int degree;
-    std::vector<std::array<double, 2>> place;
-    std::vector<double> weight;
-    std::vector<std::array<double, 3>>
-        map;  // value, d/du, d/dv of each geometry basis function, point by point
-  };
   const MassRule& mass_rule(int degree);
-  static bool cholesky(std::size_t n, Factor& factor);
+  static bool factorize(std::size_t n, Factor& factor);
   const Factor& factor(const Group& g, std::int32_t t);
   /// Makes room for `more` points in the arrays.
   void reserve_points(std::size_t more);

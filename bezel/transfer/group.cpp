@@ -164,4 +164,26 @@ std::span<double> Group::target_out(std::int32_t e) {
   return {out.data() + target_space->offset(id) * nc, size * nc};
 }
 
+std::array<double, 2> donor_place(const Group& g, const OverlayMesh& donor, std::int32_t d,
+                                  const Vec2& x, std::array<double, 3>& warm, bool& have_warm) {
+  if (!g.donor_mapped) {
+    const auto lambda = g.donor_frame[static_cast<std::size_t>(d)].lambda(x);
+    return {lambda[1], lambda[2]};
+  }
+  std::array<double, 3> lambda = warm;
+  if (invert_map(donor.degree, donor.element(d), x, lambda, have_warm)) {
+    warm = lambda;
+    have_warm = true;
+    return {lambda[1], lambda[2]};
+  }
+  // Outside the reach of the map (a point far outside a curved element): the nearest corner
+  // direction.
+  have_warm = false;
+  const auto corners = donor.corners(d);
+  const auto guess = affine_frame(corners).lambda(x);
+  const double low = std::min({guess[0], guess[1], guess[2], 0.0});
+  const double total = 1.0 - 3.0 * low;
+  return {(guess[1] - low) / total, (guess[2] - low) / total};
+}
+
 }  // namespace bezel::detail

@@ -26,6 +26,7 @@ struct Group {
         int threads);
 
   std::shared_ptr<const Space> donor_space, target_space;
+  std::shared_ptr<const Space> continuous_space;  ///< where the result is projected next, or null
   int components = 0;
   bool donor_mapped, target_mapped;  ///< polynomial in reference coordinates of a curved element
   std::vector<Frame>
@@ -55,5 +56,11 @@ struct Group {
 
 /// Integral of each basis function over its element, in the order of the coefficients.
 std::vector<double> basis_integrals(const std::shared_ptr<const Space>& space, int threads);
+
+/// Where point x lies for the polynomial of donor element d: barycentrics 1 and 2 in its frame, or
+/// in the reference triangle when it is mapped. `warm`: the last barycentrics found in d, when
+/// have_warm says so.
+std::array<double, 2> donor_place(const Group& g, const OverlayMesh& donor, std::int32_t d,
+                                  const Vec2& x, std::array<double, 3>& warm, bool& have_warm);
 
 }  // namespace bezel::detail

@@ -44,6 +44,11 @@ void check(const std::shared_ptr<const Space>& donor,
   if (options.weight || !options.density.empty()) {
     throw InputError("transfer operator: weights are not supported, expected none");
   }
+  if (!detail::is_linear(options)) {
+    throw InputError(
+        "transfer operator: expected a discontinuous target without bounds that conserves what is "
+        "covered");
+  }
 }
 
 }  // namespace
@@ -223,7 +228,8 @@ TransferResult TransferOperator::transfer(std::span<const Field> donors, int thr
     };
     for (std::size_t i = 0; i < m.outside.size(); ++i) add(m.outside[i], m.lost[i], outside);
     for (const OperatorRows::MadeMass& part : m.made) add(part.donor, part.mass, made);
-    detail::append_reports(f, applied.field, outside, made, applied.max_mass_defect, threads,
+    const std::vector<double> defect(nc, applied.max_mass_defect);
+    detail::append_reports(f, applied.field, outside, made, {}, defect, threads,
                            result.report.fields);
     result.fields.push_back(applied.field);
   }

@@ -21,7 +21,8 @@ TransferSeries::TransferSeries(std::shared_ptr<const TriangleMesh> target, Trans
     : target_(std::move(target)), options_(std::move(options)), memory_(memory) {}
 
 bool TransferSeries::worth_keeping(const Field& field) const {
-  if (options_.weight || !options_.density.empty() || !target_) return false;
+  if (options_.weight || !options_.density.empty() || !target_ || !detail::is_linear(options_))
+    return false;
   const double n = functions(field.space());
   const double t = options_.degree >= 0 ? bernstein::triangle_size(options_.degree) : n;
   const auto elements =

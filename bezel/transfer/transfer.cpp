@@ -5,13 +5,17 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <tuple>
 
 #include "bezel/base/parallel.hpp"
 #include "bezel/numeric/sum.hpp"
+#include "bezel/transfer/conserve.hpp"
+#include "bezel/transfer/continuous.hpp"
 #include "bezel/transfer/element_transfer.hpp"
+#include "bezel/transfer/limit.hpp"
 #include "bezel/transfer/overlay.hpp"
 #include "bezel/transfer/overlay_mesh.hpp"
 #include "bezel/transfer/sweep.hpp"
@@ -26,8 +30,11 @@ using clock = std::chrono::steady_clock;
 
 /// Uncovered parts below this fraction of an element are rounding.
 constexpr double silent_gap = 1e-10;
-/// Donor area outside the target below this fraction of the element is rounding of the sums.
+/// Donor area outside the target, and target area without donor for Conserve::total, below this
+/// fraction of the element is rounding of the sums.
 constexpr double outside_rounding = 1e-13;
+/// Elements that share less than this fraction of the smaller one only touch.
+constexpr double touching = 1e-13;
 
 double seconds_since(clock::time_point start) {
   return std::chrono::duration<double>(clock::now() - start).count();
@@ -38,6 +45,7 @@ struct ChunkResult {
   detail::GivenList given;
   detail::OverlayCounts counts;
   std::vector<double> made;
+  detail::ElementMasses element_made;  // with Conserve::total
   std::vector<std::pair<ElementId, double>> uncovered;
   double uncovered_area = 0;
   double max_partition_residual = 0, max_joint_gap = 0, max_mass_defect = 0;
@@ -109,12 +117,15 @@ Plan make_plan(std::span<const Field> donors,
     Basis basis;
     bool operator==(const Key&) const = default;
   };
+  const bool continuous = options.continuity == Continuity::continuous;
   std::vector<Key> keys;
   Plan plan;
   for (std::size_t i = 0; i < donors.size(); ++i) {
     const Space& space = donors[i].space();
     const Key key{&space, options.degree >= 0 ? options.degree : space.highest_degree(),
-                  options.same_basis ? space.basis() : options.basis};
+                  continuous           ? Basis::reference
+                  : options.same_basis ? space.basis()
+                                       : options.basis};
     const auto at =
         static_cast<std::size_t>(std::find(keys.begin(), keys.end(), key) - keys.begin());
     if (at == keys.size()) {
@@ -125,17 +136,78 @@ Plan make_plan(std::span<const Field> donors,
   }
   for (std::size_t k = 0; k < keys.size(); ++k) {
     std::shared_ptr<const Space> space;
+    std::shared_ptr<const Space> continuous_space;
     for (std::size_t m = 0; m < k && !space; ++m) {
-      if (keys[m].degree == keys[k].degree && keys[m].basis == keys[k].basis)
+      if (keys[m].degree == keys[k].degree && keys[m].basis == keys[k].basis) {
         space = plan.groups[m].target_space;
+        continuous_space = plan.groups[m].continuous_space;
+      }
     }
+    if (continuous && !continuous_space)
+      continuous_space = Space::continuous(target_mesh, keys[k].degree);
     if (!space) space = Space::discontinuous(target_mesh, keys[k].degree, keys[k].basis);
     std::vector<const Field*> fields;
     for (const std::size_t i : plan.members[k]) fields.push_back(&donors[i]);
     plan.groups.emplace_back(donor, target, fields, std::move(space));
+    plan.groups.back().continuous_space = std::move(continuous_space);
   }
   return plan;
 }
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", x);
+  return text;
+}
+
+void check_bounds(const Bounds& bounds) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (bounds.kind != Bounds::Kind::global) return;
+  if (!(bounds.lo <= bounds.hi) || bounds.lo == infinity || bounds.hi == -infinity) {
+    throw InputError("transfer: found bounds " + number(bounds.lo) + " to " + number(bounds.hi) +
+                     ", expected two numbers in ascending order");
+  }
+}
+
+/// Bounds of each target element's values, for one component after the other.
+class ElementBounds {
+ public:
+  ElementBounds(const Bounds& bounds, const detail::OverlayMesh& donor,
+                const detail::OverlayMesh& target, std::span<const ChunkResult> results,
+                const TransferReport& report, const TransferOptions& options)
+      : bounds_(bounds), targets_(target.element_count()), threads_(options.threads) {
+    if (options.uncovered == Uncovered::zero) {
+      for (const auto& part : report.uncovered_elements) zero_.push_back(part.first.value);
+    }
+    if (bounds.kind == Bounds::Kind::global && !zero_.empty() &&
+        (bounds.lo > 0.0 || bounds.hi < 0.0)) {
+      throw InputError("transfer: " + std::to_string(zero_.size()) +
+                       " uncovered triangles count as 0, which the bounds " + number(bounds.lo) +
+                       " to " + number(bounds.hi) + " leave out");
+    }
+    if (bounds.kind != Bounds::Kind::local) return;
+    for (const ChunkResult& r : results) {
+      for (std::size_t i = 0; i < r.given.donor.size(); ++i) {
+        const std::int32_t d = r.given.donor[i];
+        const std::int32_t t = r.given.target[i];
+        const double smaller = std::min(donor.element_area[static_cast<std::size_t>(d)],
+                                        target.element_area[static_cast<std::size_t>(t)]);
+        if (r.given.area[i] > touching * smaller) pairs_.push_back({t, d});
+      }
+    }
+  }
+  detail::ValueBounds operator()(const Field& donor, int component) const {
+    if (bounds_.kind == Bounds::Kind::global) return {{bounds_.lo}, {bounds_.hi}};
+    return detail::local_bounds(donor, component, pairs_, targets_, zero_, threads_);
+  }
+
+ private:
+  Bounds bounds_;
+  std::size_t targets_;
+  int threads_;
+  std::vector<std::int32_t> zero_;
+  std::vector<detail::Overlapping> pairs_;
+};
 
 void check_arguments(std::span<const Field> donors,
                      const std::shared_ptr<const TriangleMesh>& target,
@@ -145,6 +217,35 @@ void check_arguments(std::span<const Field> donors,
   if (options.degree < -1 || options.degree > Space::max_degree) {
     throw InputError("transfer: degree " + std::to_string(options.degree) +
                      " is not supported, expected 0 to " + std::to_string(Space::max_degree));
+  }
+  check_bounds(options.bounds);
+  if (options.continuity == Continuity::continuous) {
+    if (!options.same_basis && options.basis == Basis::physical) {
+      throw InputError(
+          "transfer: a continuous field cannot use the physical basis: a polynomial in x and y has "
+          "a higher degree along a curved edge than the edge has coefficients; use the reference "
+          "basis, or a discontinuous field");
+    }
+    for (const Field& f : donors) {
+      if (options.degree == 0 || (options.degree < 0 && f.space().highest_degree() == 0)) {
+        throw InputError("transfer: field '" + f.name() +
+                         "': a continuous field of degree 0 is one constant, expected degree 1 or "
+                         "more");
+      }
+    }
+    if (!is_available(options.mass_method))
+      throw InputError("transfer: this build of bezel has no PETSc, expected another mass method");
+    if (options.conserve == Conserve::total) {
+      throw InputError(
+          "transfer: the total mass is kept by constants on single triangles, which continuous "
+          "fields do not have: expected a discontinuous target, or the covered mass kept");
+    }
+    if (options.keep_boundary && options.bounds.kind != Bounds::Kind::none) {
+      throw InputError(
+          "transfer: bounds need the freedom that kept boundary values take: expected one of them");
+    }
+  } else if (options.keep_boundary) {
+    throw InputError("transfer: boundary values are kept by continuous targets only");
   }
   for (const Field& f : donors) {
     if (&f.mesh() != &donors.front().mesh()) {
@@ -156,11 +257,6 @@ void check_arguments(std::span<const Field> donors,
 
 std::string uncovered_message(const std::vector<std::pair<ElementId, double>>& elements,
                               double area) {
-  const auto number = [](double x) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", x);
-    return std::string(text);
-  };
   std::string message = "the donor mesh does not cover the target mesh: area " + number(area) +
                         " in " + std::to_string(elements.size()) +
                         (elements.size() == 1 ? " triangle (" : " triangles (");
@@ -175,18 +271,17 @@ std::string uncovered_message(const std::vector<std::pair<ElementId, double>>& e
          "as 0";
 }
 
-}  // namespace
-
-detail::Swept detail::sweep(const OverlayMesh& donor, const OverlayMesh& target,
-                            std::span<Group> groups, const TransferOptions& options,
-                            const Progress& progress, const VisitBlocks& visit) {
-  const FrontSearch search(donor);
+/// One pass over all target elements; `results` by chunk.
+detail::Swept pass(const detail::OverlayMesh& donor, const detail::OverlayMesh& target,
+                   const detail::FrontSearch& search, std::span<detail::Group> groups,
+                   const TransferOptions& options, const Progress& progress,
+                   const detail::VisitBlocks& visit, std::vector<ChunkResult>& results) {
   std::size_t components = 0;
-  for (const Group& g : groups) components += static_cast<std::size_t>(g.components);
-
+  for (const detail::Group& g : groups) components += static_cast<std::size_t>(g.components);
   const std::vector<std::int32_t> order = target.spatial_order();
   const std::size_t chunks = (order.size() + chunk_size - 1) / chunk_size;
-  std::vector<ChunkResult> results(chunks);
+  results.clear();
+  results.resize(chunks);
   WorkerPool pool(
       [&] { return std::make_unique<Worker>(donor, target, search, groups, options.uncovered); });
   std::mutex progress_mutex;
@@ -197,7 +292,8 @@ detail::Swept detail::sweep(const OverlayMesh& donor, const OverlayMesh& target,
         auto worker = pool.take();
         ChunkResult& result = results[chunk];
         result.made.assign(components, 0.0);
-        ElementBlocks blocks;
+        std::vector<double> made_here;
+        detail::ElementBlocks blocks;
         const std::size_t begin = chunk * chunk_size,
                           end = std::min(order.size(), (chunk + 1) * chunk_size);
         const auto t0 = clock::now();
@@ -205,10 +301,17 @@ detail::Swept detail::sweep(const OverlayMesh& donor, const OverlayMesh& target,
         const auto t1 = clock::now();
         for (std::size_t i = begin; i < end; ++i) {
           const std::int32_t t = order[i];
-          const ElementOutcome outcome =
-              worker->element.process(t, worker->segments_of(i - begin), result.given, result.made,
+          made_here.assign(components, 0.0);
+          const detail::ElementOutcome outcome =
+              worker->element.process(t, worker->segments_of(i - begin), result.given, made_here,
                                       visit ? &blocks : nullptr);
           if (visit) visit(i, t, blocks);
+          for (std::size_t c = 0; c < components; ++c) result.made[c] += made_here[c];
+          if (options.conserve == Conserve::total &&
+              outcome.uncovered_area >
+                  outside_rounding * target.element_area[static_cast<std::size_t>(t)])
+            result.element_made.add(t, made_here);
+          result.given.target.resize(result.given.donor.size(), t);
           result.solve += outcome.solve_seconds;
           result.counts.pairs += outcome.pairs;
           result.max_partition_residual =
@@ -235,7 +338,7 @@ detail::Swept detail::sweep(const OverlayMesh& donor, const OverlayMesh& target,
       },
       options.threads);
 
-  Swept swept;
+  detail::Swept swept;
   TransferReport& report = swept.report;
   std::vector<double>& given_area = swept.given_area;
   std::vector<double>& given_mass = swept.given_mass;
@@ -295,8 +398,19 @@ detail::Swept detail::sweep(const OverlayMesh& donor, const OverlayMesh& target,
   return swept;
 }
 
+}  // namespace
+
+detail::Swept detail::sweep(const OverlayMesh& donor, const OverlayMesh& target,
+                            std::span<Group> groups, const TransferOptions& options,
+                            const Progress& progress, const VisitBlocks& visit) {
+  const FrontSearch search(donor);
+  std::vector<ChunkResult> results;
+  return pass(donor, target, search, groups, options, progress, visit, results);
+}
+
 void detail::append_reports(const Field& donor, const Field& moved, std::span<const double> outside,
-                            std::span<const double> made, double max_mass_defect, int threads,
+                            std::span<const double> made, std::span<const double> spread,
+                            std::span<const double> element_defect, int threads,
                             std::vector<FieldReport>& out) {
   const auto before = integral(donor, threads);
   const auto after = integral(moved, threads);
@@ -309,9 +423,12 @@ void detail::append_reports(const Field& donor, const Field& moved, std::span<co
     line.mass_after = after[c];
     line.mass_outside = outside[c];
     line.mass_made = made[c];
-    const double defect = after[c] - (before[c] - line.mass_outside + line.mass_made);
-    line.relative_mass_defect = size[c] > 0.0 ? std::abs(defect) / size[c] : std::abs(defect);
-    line.max_element_defect = size[c] > 0.0 ? max_mass_defect / size[c] : max_mass_defect;
+    if (!spread.empty()) line.mass_spread = spread[c];
+    const double defect =
+        after[c] - (before[c] - line.mass_outside + line.mass_made + line.mass_spread);
+    const double scale = size[c] > 0.0 ? size[c] : 1.0;
+    line.relative_mass_defect = std::abs(defect) / scale;
+    line.max_element_defect = element_defect[c] / scale;
     const auto range_before = value_range(donor, static_cast<int>(c));
     const auto range_after = value_range(moved, static_cast<int>(c));
     line.min_before = range_before.lo;
@@ -332,24 +449,65 @@ TransferResult transfer(std::span<const Field> donors,
   const detail::OverlayMesh donor(donors.front().space().mesh(), "donor", options.threads);
   const detail::OverlayMesh target(target_mesh, "target", options.threads);
   Plan plan = make_plan(donors, target_mesh, donor, target, options);
-  detail::Swept swept = detail::sweep(donor, target, plan.groups, options, progress);
+  const detail::FrontSearch search(donor);
+  std::vector<ChunkResult> results;
+  detail::Swept swept = pass(donor, target, search, plan.groups, options, progress, {}, results);
   const std::size_t components = swept.made.size();
+  TransferResult transferred;
+  transferred.report = std::move(swept.report);
+  TransferReport& report = transferred.report;
+
   std::vector<double> outside(components, 0.0);
+  detail::ElementMasses element_outside{components, {}, {}};
+  std::vector<double> rest_mass(components);
   for (const std::int32_t id : swept.outside) {
     const auto d = static_cast<std::size_t>(id);
     std::size_t c0 = 0;
     for (const detail::Group& g : plan.groups) {
       const auto nc = static_cast<std::size_t>(g.components);
       for (std::size_t c = 0; c < nc; ++c) {
-        outside[c0 + c] += g.donor_mass[d * nc + c] - swept.given_mass[d * components + c0 + c];
+        rest_mass[c0 + c] = g.donor_mass[d * nc + c] - swept.given_mass[d * components + c0 + c];
+        outside[c0 + c] += rest_mass[c0 + c];
       }
       c0 += nc;
     }
+    if (options.conserve == Conserve::total)
+      element_outside.add(static_cast<std::int32_t>(d), rest_mass);
+  }
+  detail::ElementMasses added{components, {}, {}};
+  if (options.conserve == Conserve::total) {
+    detail::ElementMasses element_made{components, {}, {}};
+    for (const ChunkResult& r : results) {
+      for (std::size_t i = 0; i < r.element_made.element.size(); ++i) {
+        element_made.add(r.element_made.element[i],
+                         std::span(r.element_made.mass).subspan(i * components, components));
+      }
+    }
+    added = detail::spread(donor, target, element_outside, element_made);
+    report.spread_elements = static_cast<std::int64_t>(added.element.size());
   }
 
-  TransferResult transferred;
-  transferred.report = std::move(swept.report);
-  TransferReport& report = transferred.report;
+  std::optional<ElementBounds> bounds;
+  if (options.bounds.kind != Bounds::Kind::none)
+    bounds.emplace(options.bounds, donor, target, results, report, options);
+  std::vector<detail::ContinuousOutcome> continuous;
+  if (options.continuity == Continuity::continuous) {
+    detail::BoundsOf limits;
+    if (bounds) {
+      limits = [&](std::size_t group, std::size_t component) {
+        auto member = plan.members[group].begin();
+        while (component >= static_cast<std::size_t>(donors[*member].components()))
+          component -= static_cast<std::size_t>(donors[*member++].components());
+        const Field& field = donors[*member];
+        return detail::ComponentBounds{(*bounds)(field, static_cast<int>(component)),
+                                       detail::component_name(field, static_cast<int>(component))};
+      };
+    }
+    const auto solve_start = clock::now();
+    continuous = detail::make_continuous(plan.groups, donor, target, search, options, limits);
+    report.seconds.solve += seconds_since(solve_start);
+  }
+
   std::vector<std::optional<Field>> fields(donors.size());
   std::vector<std::vector<FieldReport>> field_reports(donors.size());
   std::size_t c0 = 0;
@@ -364,11 +522,52 @@ TransferResult transfer(std::span<const Field> donors,
       for (std::size_t n = 0; n < rows; ++n) {
         for (std::size_t c = 0; c < own; ++c) coefficients[n * own + c] = g.out[n * nc + first + c];
       }
+      std::vector<double> spread_mass(own, 0.0);
+      std::vector<double> spread_change(own, 0.0);
+      for (std::size_t a = 0; a < added.element.size(); ++a) {
+        const ElementId e(added.element[a]);
+        const auto size =
+            static_cast<std::size_t>(bernstein::triangle_size(g.target_space->degree(e)));
+        for (std::size_t c = 0; c < own; ++c) {
+          const double mass = added.mass[a * components + c0 + first + c];
+          const double step = mass / target.element_area[e.index()];
+          for (std::size_t n = 0; n < size; ++n)
+            coefficients[(g.target_space->offset(e) + n) * own + c] += step;
+          spread_mass[c] += mass;
+          spread_change[c] = std::max(spread_change[c], std::abs(step));
+        }
+      }
       fields[i].emplace(donors[i].name(), g.target_space, std::move(coefficients),
                         donors[i].components());
+      std::vector<detail::Limited> limited;
+      for (std::size_t c = 0; bounds && c < own; ++c) {
+        const int component = static_cast<int>(c);
+        if (!continuous.empty()) {
+          limited.push_back(std::move(continuous[k].limited[first + c]));
+        } else {
+          limited.push_back(detail::limit_discontinuous(*fields[i], component,
+                                                        (*bounds)(donors[i], component),
+                                                        target.element_area, options.threads));
+        }
+      }
+      if (bounds) fields[i].emplace(detail::with_coefficients(*fields[i], limited));
+      std::vector<double> element_defect(own, swept.max_mass_defect);
+      for (std::size_t c = 0; !continuous.empty() && c < own; ++c)
+        element_defect[c] = continuous[k].max_element_change[first + c];
       detail::append_reports(donors[i], *fields[i], std::span(outside).subspan(c0 + first, own),
-                             std::span(swept.made).subspan(c0 + first, own), swept.max_mass_defect,
-                             options.threads, field_reports[i]);
+                             std::span(swept.made).subspan(c0 + first, own), spread_mass,
+                             element_defect, options.threads, field_reports[i]);
+      for (std::size_t c = 0; c < own; ++c) {
+        FieldReport& line = field_reports[i][c];
+        line.max_spread_change = spread_change[c];
+        if (!continuous.empty()) line.mass_solve = continuous[k].solve[first + c];
+        if (bounds) {
+          // Both enclose the values; the limiter's is the sharper one at the bounds.
+          line.min_after = std::max(line.min_after, limited[c].range.lo);
+          line.max_after = std::min(line.max_after, limited[c].range.hi);
+          line.bounds = limited[c].report;
+        }
+      }
       first += own;
     }
     c0 += nc;

@@ -10,6 +10,7 @@
 #include "bezel/base/parallel.hpp"
 #include "bezel/numeric/sum.hpp"
 #include "bezel/transfer/element_mass.hpp"
+#include "bezel/transfer/layout.hpp"
 #include "bezel/transfer/sweep.hpp"
 #include "bezel/transfer/weight.hpp"
 
@@ -272,6 +273,11 @@ TransferResult transfer_weighted(std::span<const Field> donors,
                                  const std::shared_ptr<const TriangleMesh>& target,
                                  const TransferOptions& options, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
+  if (!is_linear(options)) {
+    throw InputError(
+        "transfer: weights need a discontinuous target without bounds that conserves what is "
+        "covered");
+  }
   const Products products(donors, options);
   const auto degree_of = [&](std::size_t k) {
     return options.degree >= 0 ? options.degree : donors[k].space().highest_degree();

@@ -201,7 +201,10 @@ class Drawing {
                                 MarkKind::vertex, MarkKind::unresolved})
       if (std::any_of(picture_.marks.begin(), picture_.marks.end(),
                       [&](const DrawnMark& mark) { return mark.kind == kind; }))
-        legend_.push_back({LegendEntry::Kind::mark, name_of(kind), {}, kind});
+        legend_.push_back({LegendEntry::Kind::mark,
+                           kind == MarkKind::vertex ? picture_.vertex_name : name_of(kind),
+                           {},
+                           kind});
   }
 
   double entry_width(const LegendEntry& entry) const {

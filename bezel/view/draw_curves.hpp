@@ -46,7 +46,8 @@ struct CurvePicture {
   std::vector<DrawnRegion> regions;
   std::vector<DrawnBand> bands;
   std::vector<DrawnMark> marks;
-  std::string region_name;  ///< of the regions in the legend; empty: not there
+  std::string region_name;             ///< of the regions in the legend; empty: not there
+  std::string vertex_name = "vertex";  ///< of marks of that kind in the legend
 };
 
 struct CurveDrawOptions {

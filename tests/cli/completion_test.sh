@@ -24,7 +24,7 @@ expect "error extend" transfer a b --uncovered e
 expect "--json" info --js
 expect "eval" ev
 expect "roots" ro
-expect "compensated" study c
+expect "compensated" study co
 expect "newton" study n
 expect "certified" eval p.json --precision c
 expect "full" roots p.json --newton f

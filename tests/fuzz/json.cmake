@@ -1,10 +1,16 @@
 # The JSON that commands read.
 if(TARGET bezel_cli)
-  foreach(what polynomial shape)
-    add_executable(fuzz_${what}s ${what}_mutations_test.cpp ${PROJECT_SOURCE_DIR}/cli/polynomials.cpp
-      ${PROJECT_SOURCE_DIR}/cli/shapes.cpp ${PROJECT_SOURCE_DIR}/cli/json_text.cpp)
+  foreach(what polynomial shape curve_spec)
+    set(sources polynomials.cpp shapes.cpp json_text.cpp json_fields.cpp)
+    set(libraries bezel::io)
+    if(what STREQUAL "curve_spec")
+      set(sources polynomials.cpp curve_spec.cpp named_shape.cpp json_text.cpp json_fields.cpp)
+      list(APPEND libraries bezel::fit)
+    endif()
+    list(TRANSFORM sources PREPEND ${PROJECT_SOURCE_DIR}/cli/)
+    add_executable(fuzz_${what}s ${what}_mutations_test.cpp ${sources})
     target_include_directories(fuzz_${what}s PRIVATE ${PROJECT_SOURCE_DIR})
-    target_link_libraries(fuzz_${what}s PRIVATE bezel_warnings bezel::io fmt::fmt
+    target_link_libraries(fuzz_${what}s PRIVATE bezel_warnings ${libraries} fmt::fmt
       nlohmann_json::nlohmann_json GTest::gtest GTest::gtest_main)
     gtest_discover_tests(fuzz_${what}s TEST_PREFIX fuzz.${what}s. PROPERTIES LABELS fuzz DISCOVERY_TIMEOUT 120)
   endforeach()

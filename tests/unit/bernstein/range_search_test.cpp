@@ -20,7 +20,8 @@ constexpr std::array<std::size_t, 2> ends{0, 2};
 
 double bound(double tol, int max_depth, int max_splits, int* splits = nullptr) {
   return bezel::bernstein::upper_bound_by_splitting(
-      2, hump, tol, ends, max_depth, max_splits, [&](int, const Doubles& b) {
+      2, hump, bezel::bernstein::WithinTolerance{tol}, ends, max_depth, max_splits,
+      [&](int, const Doubles& b) {
         if (splits != nullptr) ++*splits;
         auto [left, right] = bezel::bernstein::subdivide(std::span<const double>(b), 0.5);
         return std::array<Doubles, 2>{std::move(left), std::move(right)};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bezel/base/error.hpp"
+#include "bezel/bernstein/ceiling.hpp"
 #include "bezel/bernstein/triangle.hpp"
 
 namespace {
@@ -105,6 +106,46 @@ TEST(Range, SubnormalAndHugeCoefficients) {
   EXPECT_LE(huge.lo, 0.0);
   EXPECT_GE(huge.lo, -2e300);
   EXPECT_EQ(huge.hi, 1e308);
+}
+
+// 27 u v w, a bump of height 1 with a coefficient 4.5.
+Doubles bump() {
+  Doubles b(10, 0.0);
+  b[static_cast<std::size_t>(bezel::bernstein::triangle_index(3, 1, 1))] = 4.5;
+  return b;
+}
+
+TEST(UpperBound, IsAsSharpAsTheComparisonNeeds) {
+  using bezel::bernstein::upper_bound;
+  EXPECT_EQ(upper_bound(3, bump(), 5.0, 0.0), 4.5);  // the coefficients suffice
+  EXPECT_LE(upper_bound(3, bump(), 1.25, 0.0), 1.25);
+  EXPECT_GE(upper_bound(3, bump(), 1.25, 0.0), 1.0);
+  // Above the ceiling to a thousandth of the excess, at it to the tolerance.
+  EXPECT_GE(upper_bound(3, bump(), 0.5, 0.0), 1.0);
+  EXPECT_LE(upper_bound(3, bump(), 0.5, 0.0), 1.0005);
+  EXPECT_GE(upper_bound(3, bump(), 1.0, 1e-12), 1.0);
+  EXPECT_LE(upper_bound(3, bump(), 1.0, 1e-12), 1.0 + 1.1e-12);
+}
+
+TEST(UpperBound, HoldsWhenTheSearchEnds) {
+  // 1 - (u - w)^2 is 1 along a whole line: no subdivision is fine enough.
+  const Doubles ridge{0.0, 1.0, 1.0, 2.0, 1.0, 0.0};
+  const double b = bezel::bernstein::upper_bound(2, ridge, 0.999999999, 0.0, 50);
+  EXPECT_GE(b, 1.0);
+  EXPECT_LE(b, 1.02);
+}
+
+TEST(UpperBound, ArgumentsAreChecked) {
+  using bezel::bernstein::upper_bound;
+  EXPECT_THROW(upper_bound(1, Doubles{1.0, 2.0}, 0.0, 0.0), bezel::InputError);
+  EXPECT_THROW(upper_bound(1, Doubles{1.0, 2.0, 3.0}, std::nan(""), 0.0), bezel::InputError);
+  EXPECT_THAT(
+      [] {
+        upper_bound(1, Doubles{1.0, 2.0, 3.0}, 0.5, -1.0);
+      },
+      testing::ThrowsMessage<bezel::InputError>(
+          "upper bound: found ceiling 0.500000 and tolerance -1.000000, expected a number and at "
+          "least 0"));
 }
 
 TEST(Range, ToleranceIsChecked) {

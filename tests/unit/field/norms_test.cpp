@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "bezel/field/element_range.hpp"
 #include "bezel/field/field.hpp"
 #include "bezel/geometry/triangle.hpp"
 #include "checks.hpp"
@@ -175,6 +176,32 @@ TEST(ValueRange, KnownExtremes) {
     EXPECT_LE(constant.lo, 7.0);
     EXPECT_GE(constant.hi, 7.0);
     EXPECT_LT(constant.hi - constant.lo, 4e-13);
+  }
+}
+
+TEST(ElementRange, EnclosesOneElementsValues) {
+  for (const int d : {2, 8}) {  // 8 x 6 exceeds the largest degree of a composition
+    const MeshPtr mesh = field_test::wavy(1, 6);
+    const auto space = Space::discontinuous(mesh, d, Basis::physical);
+    const Field field = sample("f", space, formulas({"x", "x^2 + y"}));
+    const bernstein::Range range = element_range(field, ElementId(1), 1, 1e-3);
+    double lo = 1e9;
+    double hi = -1e9;
+    for (int i = 0; i <= 40; ++i) {
+      for (int j = 0; i + j <= 40; ++j) {
+        std::array<double, 2> value{};
+        field.evaluate(ElementId(1), {(40 - i - j) / 40.0, i / 40.0, j / 40.0}, value);
+        lo = std::min(lo, value[1]);
+        hi = std::max(hi, value[1]);
+      }
+    }
+    EXPECT_LE(range.lo, lo);
+    EXPECT_GE(range.hi, hi);
+    EXPECT_GT(range.lo, lo - 0.02);  // the samples see the extremes roughly
+    EXPECT_LT(range.hi, hi + 0.02);
+    EXPECT_THROW((void)element_range(field, ElementId(1), 2, 0.1), InputError);
+    EXPECT_THROW((void)element_range(field, ElementId(1), 0, -0.1), InputError);
+    EXPECT_THROW((void)element_range(field, ElementId(99), 0, 0.1), InputError);
   }
 }
 

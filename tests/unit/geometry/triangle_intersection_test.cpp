@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "bezel/base/error.hpp"
@@ -165,6 +166,47 @@ TEST(TriangleIntersectionTest, RegionsThatTouchInOnePoint) {
   EXPECT_EQ(two.polygons.size(), 2u);
   EXPECT_NEAR(total(one.polygons), total(two.polygons), 1e-15);
   EXPECT_GT(total(one.polygons), 0.1);
+}
+
+// Sides cross within rounding of a corner of each triangle, where the crossings' parameters are
+// rounded to the corner. Taken for one joint, an inner triangle was reported.
+TEST(TriangleIntersectionTest, CrossingsRoundedToACornerAreNotTakenForOne) {
+  // Neighbours in a mesh that was sheared by rounding only: they share a sliver of 1e-34.
+  const Points sheared{{{0x1.999b38ef45b2fp-54, -1}},
+                       {{0x1.0000000000001p-1, -1}},
+                       {{1, -1}},
+                       {{0x1.cdf63a1a50365p-4, -0x1.825560bb055c4p-2}},
+                       {{0x1.2d393d601e83cp-1, -0x1.f70efb3a43dcp-2}},
+                       {{-0x1.ea27eda6fea03p-6, 0x1.f6aa7d13ea8efp-4}}};
+  const Points plain{{{-1, 0}},
+                     {{-0x1.0f513f6d37f5p-1, -0x1.3d408a8486654p-5}},
+                     {{-0x1.ea27eda6feap-6, 0x1.f6aa7d13ea8efp-4}},
+                     {{-1, 0.5}},
+                     {{-0x1.3086f9a6e4c3ep-1, 0x1.d28c9f1af4122p-2}},
+                     {{-1, 1}}};
+  // A corner inside the other triangle by 1e-17.
+  const Points left{{{0, -1}},        {{0, -0.75}},    {{0, -0.5}},
+                    {{-0.25, -0.75}}, {{-0.25, -0.5}}, {{-0.5, -0.5}}};
+  const Points right{{{-0x1.3be7d7d4578fep-57, -1}},
+                     {{0.25, -1}},
+                     {{0.5, -1}},
+                     {{0.25, -0.75}},
+                     {{0.5, -0.75}},
+                     {{0.5, -0.5}}};
+  // A corner on a side, and a crossing 1e-48 beside it.
+  const Points corner{{{-0.505, -0.505}}, {{0, -0.505}}, {{0x1p-158, 0x1p-158}}};
+  const Points side{{{1.01, -1.01}}, {{1.01, 0}}, {{0, 0}}};
+  const auto common = [](int degree, const Points& a, const Points& b) {
+    return total(intersect(degree, a, degree, b).polygons);
+  };
+  for (const auto& [degree, a, b] :
+       {std::tuple(2, sheared, plain), std::tuple(2, left, right), std::tuple(1, corner, side)}) {
+    EXPECT_LE(std::abs(common(degree, a, b)), 1e-17);
+    EXPECT_LE(std::abs(common(degree, b, a)), 1e-17);
+    double rest = 0.0;
+    for (const CurvedPolygon& p : difference(degree, a, degree, b).loops) rest += area(p);
+    EXPECT_NEAR(rest, bezel::area(degree, a), 1e-16);
+  }
 }
 
 TEST(TriangleIntersectionTest, StorageIsReused) {

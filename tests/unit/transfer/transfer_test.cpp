@@ -7,31 +7,20 @@
 #include <tuple>
 
 #include "bezel/mesh/generate.hpp"
+#include "support/fields.hpp"
 #include "support/meshes.hpp"
 
 namespace bezel {
 namespace {
 
 using test::bend;
+using test::checkerboard;
 using test::grid_mesh;
 using test::same_place;
 using test::turn;
 
 std::span<const Formula> one(const Formula& f) {
   return {&f, 1};
-}
-
-Field checkerboard(const std::shared_ptr<const TriangleMesh>& mesh, int degree, Basis basis) {
-  auto space = Space::discontinuous(mesh, degree, basis);
-  std::vector<double> c(space->coefficient_count());
-  RandomStream random("checkerboard", 7);
-  for (std::size_t e = 0; e < mesh->element_count(); ++e) {
-    const double value = random.uniform() < 0.5 ? 0.0 : 1.0;
-    for (int i = 0; i < bernstein::triangle_size(degree); ++i) {
-      c[space->offset(ElementId(e)) + static_cast<std::size_t>(i)] = value;
-    }
-  }
-  return Field("zero or one", space, c);
 }
 
 double largest_difference(const Field& a, const Field& b) {

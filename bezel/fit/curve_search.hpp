@@ -1,0 +1,234 @@
+#pragma once
+// The parts of the search for good nodes on a curve: foot points, Newton on the equal-tangent
+// equations, least squares for distances and for error (4).
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "bezel/fit/curve_tables.hpp"
+#include "bezel/fit/small_solve.hpp"
+
+namespace bezel::curve_search {
+
+constexpr std::size_t max_nodes = std::size_t(max_curve_degree) + 1;
+
+/// Nodes on the curve: parameters and what the curve is there.
+template <int dim>
+struct Nodes {
+  int n = 0;
+  std::array<double, max_nodes> t;
+  std::array<CurveJet<dim>, max_nodes> g;
+  /// x and d1 of g once more, coordinate by coordinate, for sums over the nodes.
+  std::array<std::array<double, max_nodes>, dim> x, d1;
+
+  void place(const SmoothCurve<dim>& curve, int i, double parameter) {
+    set(i, parameter, curve(parameter));
+  }
+  void set(int i, double parameter, const CurveJet<dim>& jet) {
+    t[std::size_t(i)] = parameter;
+    g[std::size_t(i)] = jet;
+    for (std::size_t c = 0; c < dim; ++c) {
+      x[c][std::size_t(i)] = jet.x.c[c];
+      d1[c][std::size_t(i)] = jet.d1.c[c];
+    }
+  }
+  bool ordered() const {
+    for (int i = 0; i < n; ++i)
+      if (!(t[std::size_t(i)] < t[std::size_t(i) + 1])) return false;
+    return true;
+  }
+};
+
+/// What every step needs; `ends` are the jets at -1 and 1.
+template <int dim>
+struct Problem {
+  const SmoothCurve<dim>& curve;
+  const CurveInterpolator::Tables& tables;
+  double length;
+  CurveJet<dim> first, last;
+
+  Problem(const SmoothCurve<dim>& c, const CurveInterpolator::Tables& made)
+      : curve(c), tables(made), length(c.length()), first(c(-1.0)), last(c(1.0)) {}
+  Nodes<dim> chord() const {
+    Nodes<dim> nodes;
+    nodes.n = 1;
+    set_ends(nodes);
+    return nodes;
+  }
+  void set_ends(Nodes<dim>& nodes) const {
+    nodes.set(0, -1.0, first);
+    nodes.set(nodes.n, 1.0, last);
+  }
+};
+
+/// sum_k row[k] g(t_k).
+template <int dim>
+Vec<dim> combine(const double* row, const Nodes<dim>& nodes) {
+  Vec<dim> sum;
+  for (std::size_t c = 0; c < dim; ++c)
+    sum.c[c] = small::product(row, nodes.x[c].data(), nodes.n + 1);
+  return sum;
+}
+
+template <int dim>
+struct Foot {
+  double s;
+  Vec<dim> e, tangent;  ///< point asked for minus foot; unit tangent there
+};
+
+/// The step of Newton's method from s, where the curve is `jet`, towards the foot of q.
+template <int dim>
+double foot_step(const CurveJet<dim>& jet, const Vec<dim>& e, double s) {
+  const double speed_squared = dot(jet.d1, jet.d1);
+  // The second derivative of half the squared distance; where it is small or negative the nearest
+  // point is elsewhere, and the step for a straight line is taken instead.
+  double h = speed_squared - dot(e, jet.d2);
+  if (h < 0.25 * speed_squared) h = speed_squared;
+  const double step = std::clamp(dot(e, jet.d1) / h, -0.25, 0.25);
+  return std::clamp(s + step, -1.0, 1.0) - s;
+}
+
+/// A nearby point of the curve where q - g(s) is normal to it (or an end point), by at most 12
+/// steps of Newton from s.
+template <int dim>
+Foot<dim> foot(const SmoothCurve<dim>& curve, const Vec<dim>& q, double s) {
+  // What a cubic Taylor term of a step leaves is below rounding.
+  constexpr double settled = 1e-6;
+  s = std::clamp(s, -1.0, 1.0);
+  for (int i = 0;; ++i) {
+    const CurveJet<dim> jet = curve(s);
+    Vec<dim> e = q - jet.x;
+    const double step = foot_step(jet, e, s);
+    Vec<dim> d1 = jet.d1;
+    if (std::fabs(step) <= settled) {
+      // What is left of the step is followed on the Taylor polynomial: no further evaluation.
+      e -= step * (jet.d1 + (0.5 * step) * jet.d2);
+      d1 += step * jet.d2;
+    } else if (i < 12) {
+      s += step;
+      continue;
+    }
+    const double at = s + (std::fabs(step) <= settled ? step : 0.0);
+    const Vec<dim> tau = (1.0 / norm(d1)) * d1;
+    // Inside, what is left along the curve is the step's error and no distance.
+    if (at > -1.0 && at < 1.0) e -= dot(e, tau) * tau;
+    return {at, e, tau};
+  }
+}
+
+/// Largest step <= 1 along dt (of the inner nodes 1..n-1) that leaves every gap a tenth.
+template <int dim>
+double longest_step(const Nodes<dim>& nodes, const small::Vector& dt) {
+  double lambda = 1.0;
+  for (int k = 0; k < nodes.n; ++k) {
+    const double gap = nodes.t[std::size_t(k) + 1] - nodes.t[std::size_t(k)];
+    const double before = k == 0 ? 0.0 : dt[std::size_t(k) - 1];
+    const double after = k + 1 == nodes.n ? 0.0 : dt[std::size_t(k)];
+    const double shrink = before - after;
+    if (shrink * lambda > 0.9 * gap) lambda = 0.9 * gap / shrink;
+  }
+  return lambda;
+}
+/// nodes + lambda dt, evaluated. dt[i - 1] belongs to node i.
+template <int dim>
+Nodes<dim> moved(const Problem<dim>& problem, const Nodes<dim>& nodes, const small::Vector& dt,
+                 double lambda) {
+  Nodes<dim> next;
+  next.n = nodes.n;
+  problem.set_ends(next);
+  for (int i = 1; i < nodes.n; ++i)
+    next.place(problem.curve, i, nodes.t[std::size_t(i)] + lambda * dt[std::size_t(i) - 1]);
+  return next;
+}
+
+/// Levenberg-Marquardt in the inner nodes; the unknown of node i is dt_i / unit_i, unit_i the
+/// smaller gap beside it.
+///
+/// @param build  (squares, unit): adds the rows unit_k dr / dt_k, with right-hand side -r, at the
+///               nodes accepted last
+/// @param accept (next) -> relative gain in cost, when that is positive `next` becomes the state
+/// @return  steps tried. Stops when two gains in a row are below `least_gain` at little damping
+template <int dim, class Build, class Accept>
+int levenberg_marquardt(const Problem<dim>& problem, Nodes<dim>& nodes, int iterations,
+                        double least_gain, const Build& build, const Accept& accept) {
+  const int size = nodes.n - 1;
+  constexpr double least_damping = 1e-30, little_damping = 1e-12, most_damping = 1e4;
+  double mu = 1e-6;
+  int done = 0, small_gains = 0;
+  small::LeastSquares squares;
+  small::Vector unit;
+  while (done < iterations && size > 0) {
+    for (int r = 0; r < size; ++r) {
+      const double* t = nodes.t.data() + r;
+      unit[std::size_t(r)] = std::min(t[1] - t[0], t[2] - t[1]);
+    }
+    squares.start(size);
+    build(squares, unit);
+    squares.factor();
+    double gain = 0.0;
+    while (mu < most_damping && !(gain > 0.0) && done < iterations) {
+      ++done;
+      small::Vector step;
+      if (squares.solve(mu, step)) {
+        for (int r = 0; r < size; ++r) step[std::size_t(r)] *= unit[std::size_t(r)];
+        const Nodes<dim> next = moved(problem, nodes, step, longest_step(nodes, step));
+        if (next.ordered()) gain = accept(next);
+        if (gain > 0.0) nodes = next;
+      }
+      mu = gain > 0.0 ? std::max(0.02 * mu, least_damping) : 20.0 * mu;
+    }
+    if (!(gain > 0.0)) break;
+    small_gains = gain >= least_gain || mu > little_damping ? 0 : small_gains + 1;
+    if (small_gains == 2) break;
+  }
+  return done;
+}
+
+/// Largest |F_i| of the equal-tangent equations F_i = 2 / L p'(xi_i) x tau(t_i).
+template <int dim>
+double tangent_residual(const Problem<dim>& problem, const Nodes<dim>& nodes);
+
+struct NewtonResult {
+  double residual;
+  bool converged;
+  int iterations;
+};
+/// Newton on the equal-tangent equations (in space: damped Gauss-Newton on their squares), then
+/// with a line search, then Levenberg-Marquardt. `nodes` becomes the best iterate.
+///
+/// @param patient    false: stop after the plain Newton steps
+/// @param converged  the residual of a root
+template <int dim>
+NewtonResult solve_tangents(const Problem<dim>& problem, Nodes<dim>& nodes, bool patient,
+                            double converged = 1e-12);
+
+/// Mean square distance of an interpolant to the curve, measured while searching.
+template <int dim>
+struct Score {
+  double d2 = HUGE_VAL;                ///< sqrt(int d^2 |p'|)
+  double min_speed = 0.0;              ///< smallest |p'| / (L / 2)
+  bool valid = false;                  ///< nodes ordered, min_speed >= 1e-3
+  double slow_xi = 0.0, far_xi = 0.0;  ///< where |p'| is smallest, and d largest
+  static constexpr std::size_t most = std::size_t(4) * max_curve_degree;
+  std::array<Foot<dim>, most> foot;
+  std::array<double, most> speed;  ///< |p'|
+};
+/// @param guess  feet to start from; null: between the nodes
+template <int dim>
+Score<dim> measure(const Problem<dim>& problem, const Nodes<dim>& nodes,
+                   const Score<dim>* guess = nullptr);
+
+/// About the same d2 from one point in four: a check.
+template <int dim>
+double rough_distance(const Problem<dim>& problem, const Nodes<dim>& nodes);
+
+/// Levenberg-Marquardt on the mean square distance; `nodes` and `score` become the best.
+///
+/// @return  iterations done
+template <int dim>
+int minimise_distance(const Problem<dim>& problem, Nodes<dim>& nodes, Score<dim>& score,
+                      int iterations);
+
+}  // namespace bezel::curve_search

@@ -1,0 +1,47 @@
+#pragma once
+// Internal: mass matrices of curved elements by quadrature, and their Cholesky factors.
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "bezel/numeric/vec.hpp"
+
+namespace bezel::detail {
+
+/// Quadrature on the reference triangle with the basis functions of a map at the points.
+struct MassRule {
+  int degree;                                ///< exact for polynomials up to this
+  std::vector<std::array<double, 2>> place;  ///< barycentrics 1 and 2 of the points
+  std::vector<double> weight;
+  std::vector<std::array<double, 3>>
+      map;  ///< value, d/du, d/dv of each geometry basis function, point by point
+};
+
+/// @param geometric_degree  of the elements, 1..10
+MassRule make_mass_rule(int geometric_degree, int degree);
+
+/// A point of an element's map and its Jacobian.
+struct MassPoint {
+  Vec2 x;
+  double det;
+};
+/// The map of the element with these control points at point q of the rule.
+inline MassPoint mass_point(const MassRule& rule, std::span<const Vec2> control, std::size_t q) {
+  const std::array<double, 3>* map = rule.map.data() + q * control.size();
+  Vec2 x;
+  Vec2 du;
+  Vec2 dv;
+  for (std::size_t i = 0; i < control.size(); ++i) {
+    x += control[i] * map[i][0];
+    du += control[i] * map[i][1];
+    dv += control[i] * map[i][2];
+  }
+  return {x, cross(du, dv)};
+}
+
+/// Replaces the lower triangle of a matrix (n x n, row major) by its Cholesky factor; false when
+/// the matrix is not positive definite in double precision.
+bool cholesky(std::size_t n, std::span<double> lower);
+
+}  // namespace bezel::detail
