@@ -6,15 +6,16 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "bezel/base/atomic_file.hpp"
 #include "bezel/base/error.hpp"
+#include "bezel/transfer/operator.hpp"
 #include "cli/arguments.hpp"
 #include "cli/output.hpp"
 #include "cli/progress_bar.hpp"
+#include "cli/transfer_series.hpp"
 
 namespace bezel::cli {
 namespace {
@@ -22,6 +23,7 @@ namespace {
 struct TransferCommand {
   std::string donor, target, out, report, uncovered = "error", conserve = "covered",
                                           continuity = "dg", bounds = "none";
+  std::string weight, density, matrix;
   std::vector<std::string> fields;
   std::optional<int> degree;
   Basis basis = Basis::reference;
@@ -30,6 +32,10 @@ struct TransferCommand {
   std::string mass_method = "auto";
   std::optional<Format> format;
 };
+
+Json or_null(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
 
 constexpr std::array<const char*, 4> method_names = {"auto", "cholesky", "conjugate_gradients",
                                                      "petsc"};
@@ -99,6 +105,9 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
               {"donor", options.donor},
               {"target", options.target},
               {"output", options.out},
+              {"matrix", or_null(options.matrix)},
+              {"weight", or_null(options.weight)},
+              {"density", or_null(options.density)},
               {"bounds", options.bounds},
               {"fields", fields},
               {"mass_outside", outside},
@@ -187,26 +196,27 @@ std::string to_table(const TransferReport& r, const TransferCommand& options) {
   return text;
 }
 
-// The output and its report appear both or not at all.
-void write_both(const TransferCommand& options, const Dataset& data, const WriteOptions& how,
-                const Json& report, const Context& context) {
-  std::optional<AtomicFile> report_file;
-  if (!options.report.empty()) {
-    report_file.emplace(options.report);
-    report_file->write(to_text(report));
-  }
-  notes(context, options.out, write(options.out, data, how));
-  if (!report_file) return;
-  try {
-    report_file->commit();
-  } catch (...) {
-    std::error_code ignored;
-    std::filesystem::remove(options.out, ignored);
-    throw;
-  }
+// The output, its report and the matrix appear all or not at all.
+void write_all(const TransferCommand& options, const Dataset& data, const WriteOptions& how,
+               const Json& report, const TransferOperator* matrix, const Context& context) {
+  FileSet files;
+  if (!options.report.empty()) files.add(options.report, to_text(report));
+  if (matrix != nullptr) matrix->write_matrix_market(files.add(options.matrix));
+  const Encoded encoded = encode(options.out, data, how);
+  files.add(options.out, encoded.bytes);
+  notes(context, options.out, encoded.lost);
+  files.commit();
 }
 
 void check_usage(const TransferCommand& options) {
+  const bool weighted = !options.weight.empty() || !options.density.empty();
+  if (!options.matrix.empty() && weighted)
+    throw UsageError("--matrix: not with --weight or --density");
+  if ((!options.matrix.empty() || weighted) &&
+      (options.continuity == "cg" || options.bounds != "none" || options.conserve != "covered")) {
+    throw UsageError(std::string(weighted ? "--weight and --density" : "--matrix") +
+                     ": not with --continuity cg, --bounds or --conserve total");
+  }
   if (options.continuity != "cg") {
     if (options.keep_boundary) throw UsageError("--keep-boundary needs --continuity cg");
     if (options.mass_method != "auto") throw UsageError("--mass-method needs --continuity cg");
@@ -227,28 +237,7 @@ void check_usage(const TransferCommand& options) {
     throw UsageError("--mass-method petsc: this build of bezel has no PETSc");
 }
 
-int run(const TransferCommand& options, const Context& context) {
-  const Bounds bounds = parse_bounds(options.bounds);
-  check_usage(options);
-  WriteOptions how;
-  how.format = options.format ? options.format : format_of(options.out);
-  require_writable(options.out);
-  if (!options.report.empty()) require_writable(options.report);
-
-  const Dataset donor = read_noting(context, options.donor);
-  std::vector<Field> fields;
-  for (const std::string& name : options.fields) {
-    try {
-      fields.push_back(donor.field(name));
-    } catch (const InputError& error) {
-      throw error.in_file(options.donor);
-    }
-  }
-  if (options.fields.empty()) fields = donor.fields;
-  if (fields.empty())
-    throw InputError(InputPlace{options.donor, 0, {}, -1}, "there are no fields to transfer");
-  const Dataset target = read_noting(context, options.target);
-
+TransferOptions transfer_options(const TransferCommand& options, const Context& context) {
   TransferOptions how_to;
   how_to.degree = options.degree.value_or(-1);
   how_to.basis = options.basis;
@@ -256,35 +245,76 @@ int run(const TransferCommand& options, const Context& context) {
   how_to.uncovered = options.uncovered == "extend" ? Uncovered::extend
                      : options.uncovered == "zero" ? Uncovered::zero
                                                    : Uncovered::error;
+  if (!options.weight.empty()) {
+    const std::vector<Formula> weight = parse_components("--weight", options.weight);
+    if (weight.size() != 1) throw UsageError("--weight: found several formulas, expected one");
+    how_to.weight = weight.front();
+  }
+  how_to.density = options.density;
   how_to.conserve = options.conserve == "total" ? Conserve::total : Conserve::covered;
-  how_to.bounds = bounds;
+  how_to.bounds = parse_bounds(options.bounds);
   how_to.continuity =
       options.continuity == "cg" ? Continuity::continuous : Continuity::discontinuous;
   how_to.keep_boundary = options.keep_boundary;
   how_to.mass_method = method_named(options.mass_method);
   how_to.threads = context.threads;
+  return how_to;
+}
+
+// transfer(), or the same by an operator whose matrix is asked for.
+TransferResult move(const TransferCommand& options, std::span<const Field> fields,
+                    const std::shared_ptr<const TriangleMesh>& target,
+                    const TransferOptions& how_to, std::optional<TransferOperator>& matrix,
+                    const Progress& progress) {
+  if (options.matrix.empty()) return transfer(fields, target, how_to, progress);
+  matrix.emplace(fields.front().space_ptr(), target, how_to, progress);
+  for (const Field& f : fields) {
+    if (!matrix->accepts(f.space()))
+      throw InputError("donor mesh: field '" + f.name() + "' has another degree or basis than '" +
+                       fields.front().name() + "', expected fields that share one matrix");
+  }
+  return matrix->transfer(fields, how_to.threads);
+}
+
+int run(const TransferCommand& options, const Context& context) {
+  check_usage(options);
+  const TransferOptions how_to = transfer_options(options, context);
+  if (is_collection(options.donor) || is_collection(options.out)) {
+    if (!options.matrix.empty()) throw UsageError("--matrix: not with a time series");
+    if (options.format && options.format != Format::vtu)
+      throw UsageError("--format: the steps of a time series are written as vtu");
+    return transfer_series(
+        {options.donor, options.target, options.out, options.report, options.fields}, how_to,
+        [&](const TransferReport& report) { return to_json(options, report); }, context);
+  }
+  WriteOptions how;
+  how.format = options.format ? options.format : format_of(options.out);
+  require_writable(options.out);
+  if (!options.report.empty()) require_writable(options.report);
+  if (!options.matrix.empty()) require_writable(options.matrix);
+
+  const Dataset donor = read_noting(context, options.donor);
+  const std::vector<Field> fields = chosen_fields(donor, options.donor, options.fields);
+  const Dataset target = read_noting(context, options.target);
+
   TransferResult result;
+  std::optional<TransferOperator> matrix;
   {
     ProgressBar bar(context, "transfer");
-    try {
-      result = transfer(fields, target.mesh, how_to, bar.callback());
-    } catch (const UncoveredError& error) {
-      throw InputError(InputPlace{options.target, 0, {}, -1},
-                       std::string(error.what()) + " (--uncovered)");
-    } catch (const InputError& error) {
-      const bool donors =
-          error.message().find("donor mesh") == 0 || error.message().find("transfer: field") == 0;
-      throw error.in_file(donors ? options.donor : options.target);
-    }
+    result = naming_files(options.donor, options.target, [&] {
+      return move(options, fields, target.mesh, how_to, matrix, bar.callback());
+    });
   }
   Dataset moved;
   moved.mesh = target.mesh;
   moved.fields = std::move(result.fields);
   moved.time = donor.time;
   const Json report = to_json(options, result.report);
-  write_both(options, moved, how, report, context);
+  write_all(options, moved, how, report, matrix ? &*matrix : nullptr, context);
   std::vector<std::string> files = {options.out};
-  if (!options.report.empty()) files.push_back(options.report);
+  for (const std::string& file : {options.report, options.matrix}) {
+    if (!file.empty()) files.push_back(file);
+  }
   print_or_remove(context.json ? to_text(report) : to_table(result.report, options), files);
   if (!context.json && context.verbose > 0) {
     const auto& s = result.report.seconds;
@@ -302,9 +332,10 @@ void add_transfer(CLI::App& app, Context& context) {
   CLI::App* command =
       add_command(app, context, "transfer", "Move fields from one mesh to another, conserving mass",
                   "bezel transfer donor.msh target.msh -f u --uncovered extend -o moved.vtu "
-                  "--report report.json",
+                  "--report report.json\n  bezel transfer run.pvd target.msh -o moved.pvd",
                   options, run);
-  command->add_option("DONOR", o.donor, "File with the fields")->required();
+  command->add_option("DONOR", o.donor, "File with the fields, or a time series (.pvd)")
+      ->required();
   command->add_option("TARGET", o.target, "File with the mesh to move them to")->required();
   command->add_option("-o,--output", o.out, "File to write")->required()->type_name("FILE");
   command->add_option("-f,--field", o.fields, "A field to move; may be repeated (default: all)")
@@ -341,9 +372,21 @@ void add_transfer(CLI::App& app, Context& context) {
       ->type_name("HOW")
       ->capture_default_str();
   command
-      ->add_option("--conserve", o.conserve,
-                   "Which mass is kept: covered (before - outside + made) or total (the difference "
-                   "goes to triangles at the boundary; constants change there)")
+      ->add_option("--weight", o.weight,
+                   "A polynomial in x and y, such as the distance x from an axis: project and "
+                   "conserve in the inner product with this weight")
+      ->type_name("EXPR");
+  command
+      ->add_option("--density", o.density,
+                   "A field that carries the others: density times field is conserved")
+      ->type_name("NAME");
+  command
+      ->add_option("--matrix", o.matrix,
+                   "Write the transfer as a sparse matrix there too (Matrix Market)")
+      ->type_name("FILE");
+  ->add_option("--conserve", o.conserve,
+               "Which mass is kept: covered (before - outside + made) or total (the difference "
+               "goes to triangles at the boundary; constants change there)")
       ->check(CLI::IsMember({"covered", "total"}))
       ->type_name("WHAT")
       ->capture_default_str();

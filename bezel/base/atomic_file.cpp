@@ -116,13 +116,18 @@ void AtomicFile::write(std::string_view bytes) {
   }
 }
 
-void AtomicFile::commit() {
-  if (fd_ < 0) throw InternalError("AtomicFile::commit after commit or failure");
+void AtomicFile::seal() {
+  if (fd_ < 0) throw InternalError("AtomicFile::seal after commit or failure");
   flush();
   // EINVAL: a file system that cannot sync; the rename still makes the file appear whole.
   if (::fsync(fd_) != 0 && errno != EINVAL) fail(errno);
   const int fd = std::exchange(fd_, -1);
   if (::close(fd) != 0) fail(errno);
+}
+
+void AtomicFile::commit() {
+  if (temporary_.empty()) throw InternalError("AtomicFile::commit after commit or failure");
+  if (fd_ >= 0) seal();
   if (::rename(temporary_.c_str(), destination_.c_str()) != 0) fail(errno);
   temporary_.clear();
   // The rename itself reaches the disk with the folder; a failure here cannot undo it.
@@ -130,6 +135,31 @@ void AtomicFile::commit() {
   if (folder >= 0) {
     static_cast<void>(::fsync(folder));
     ::close(folder);
+  }
+}
+
+AtomicFile& FileSet::add(const std::string& path) {
+  files_.push_back(std::make_unique<AtomicFile>(path));
+  paths_.push_back(path);
+  return *files_.back();
+}
+
+void FileSet::add(const std::string& path, std::string_view bytes) {
+  AtomicFile& file = add(path);
+  file.write(bytes);
+  file.seal();
+}
+
+void FileSet::commit() {
+  for (const auto& file : files_) {
+    if (!file->sealed()) file->seal();
+  }
+  std::size_t done = 0;
+  try {
+    for (; done < files_.size(); ++done) files_[done]->commit();
+  } catch (...) {
+    for (std::size_t i = 0; i < done; ++i) ::unlink(paths_[i].c_str());
+    throw;
   }
 }
 

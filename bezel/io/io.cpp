@@ -70,21 +70,25 @@ Dataset read(const std::string& path, const ReadOptions& options) {
   }
 }
 
-std::vector<std::string> write(const std::string& path, const Dataset& data,
-                               const WriteOptions& options) {
+Encoded encode(const std::string& path, const Dataset& data, const WriteOptions& options) {
   const Format format = options.format ? *options.format : format_of(path);
-  std::vector<std::string> lost;
-  std::string bytes;
+  Encoded out;
   try {
     check(data);
-    bytes = format == Format::native ? files::write_native(data)
-            : format == Format::vtu  ? files::write_vtu(data, options, lost)
-                                     : files::write_msh(data, format, lost);
+    out.bytes = format == Format::native ? files::write_native(data)
+                : format == Format::vtu  ? files::write_vtu(data, options, out.lost)
+                                         : files::write_msh(data, format, out.lost);
   } catch (const InputError& error) {
     throw error.in_file(path);
   }
-  write_file(path, bytes);
-  return lost;
+  return out;
+}
+
+std::vector<std::string> write(const std::string& path, const Dataset& data,
+                               const WriteOptions& options) {
+  Encoded encoded = encode(path, data, options);
+  write_file(path, encoded.bytes);
+  return std::move(encoded.lost);
 }
 
 Format format_of(const std::string& path) {

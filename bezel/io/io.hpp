@@ -72,6 +72,14 @@ struct WriteOptions {
 std::vector<std::string> write(const std::string& path, const Dataset& data,
                                const WriteOptions& options = {});
 
+/// The bytes that write() would write to a path, and its return value.
+struct Encoded {
+  std::string bytes;
+  std::vector<std::string> lost;
+};
+/// @throws InputError as write(), but for the writing
+Encoded encode(const std::string& path, const Dataset& data, const WriteOptions& options = {});
+
 /// The format a path's extension stands for. @throws InputError for an unknown extension, listing
 /// the known ones.
 Format format_of(const std::string& path);

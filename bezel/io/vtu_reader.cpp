@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <pugixml.hpp>
@@ -13,17 +12,19 @@
 #include "bezel/io/vtu.hpp"
 #include "bezel/io/vtu_content.hpp"
 #include "bezel/io/vtu_data.hpp"
+#include "bezel/io/xml.hpp"
 
 namespace bezel::files {
 namespace {
 
 class Reader {
  public:
-  Reader(const std::string& path, std::string_view bytes) : path_(path), bytes_(bytes) {}
+  Reader(const std::string& path, std::string_view bytes)
+      : path_(path), bytes_(bytes), document_(path, bytes) {}
 
   VtuContent read() {
     parse();
-    const pugi::xml_node root = document_.child("VTKFile");
+    const pugi::xml_node root = document_.document().child("VTKFile");
     if (!root) fail(0, "expected a VTKFile element at the top");
     const std::string type = root.attribute("type").value();
     if (type != "UnstructuredGrid")
@@ -43,20 +44,11 @@ class Reader {
 
  private:
   [[noreturn]] void fail(std::int64_t at_line, const std::string& message) const {
-    InputPlace place;
-    place.file = path_;
-    place.line = at_line;
-    throw InputError(place, message);
+    document_.fail(at_line, message);
   }
-  std::int64_t line(const pugi::xml_node& node) const {
-    const std::ptrdiff_t offset = node.offset_debug();
-    return offset < 0 ? 0 : line_of(bytes_, static_cast<std::size_t>(offset));
-  }
+  std::int64_t line(const pugi::xml_node& node) const { return document_.line(node); }
   pugi::xml_node child(const pugi::xml_node& node, const char* name) const {
-    const pugi::xml_node found = node.child(name);
-    if (!found)
-      fail(line(node), fmt::format("{} has no {} element, expected one", node.name(), name));
-    return found;
+    return document_.child(node, name);
   }
 
   /// Raw appended data is no XML: it is cut out before the rest is parsed.
@@ -82,13 +74,7 @@ class Reader {
       has_appended_ = true;
       xml = std::string(bytes_.substr(0, start)) + "</VTKFile>";
     }
-    const pugi::xml_parse_result result = document_.load_buffer(xml.data(), xml.size());
-    if (!result) {
-      std::string reason = result.description();
-      if (!reason.empty()) reason[0] = static_cast<char>(std::tolower(reason[0]));
-      fail(line_of(bytes_, static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0))),
-           "the XML cannot be read: " + reason);
-    }
+    document_.parse(xml);
   }
 
   void encoding(const pugi::xml_node& root) {
@@ -365,7 +351,7 @@ class Reader {
 
   std::string path_;
   std::string_view bytes_;
-  pugi::xml_document document_;
+  Xml document_;
   std::string_view appended_;
   bool has_appended_ = false, appended_base64_ = false;
   VtuEncoding encoding_;

@@ -8,9 +8,9 @@
 
 namespace bezel::detail {
 
-void ElementTransfer::add_extension(const Group& g, std::int32_t t, std::span<const Segment> run,
-                                    double area, const Vec2& centre, Accumulators& sums,
-                                    std::span<double> made) {
+template <class Visit>
+void ElementTransfer::extension_points(const Group& g, std::int32_t t, std::span<const Segment> run,
+                                       const Vec2& centre, const Visit& visit) {
   // The donors along the hole in the cover; without any, the one nearest to the piece.
   struct Neighbour {
     std::int32_t donor;
@@ -45,29 +45,11 @@ void ElementTransfer::add_extension(const Group& g, std::int32_t t, std::span<co
   };
 
   const int pt = g.target_space->degree(ElementId(t));
-  const auto nc = static_cast<std::size_t>(g.components);
-  std::vector<double> value(nc);
-  std::vector<double> first(nc);
-  std::vector<double> difference(nc, 0.0);
-  std::vector<double> phi(static_cast<std::size_t>(bernstein::triangle_size(pt)));
-  bool have_first = false;
-  const auto factors = multinomials(pt);
   const auto add = [&](double w, const std::array<double, 2>& place, const Vec2& x) {
     const std::int32_t d = nearest(x);
     std::array<double, 3> warm{};
     bool have_warm = false;
-    const auto q = donor_place(g, d, x, warm, have_warm);
-    evaluate_scaled(g.donor_space->degree(ElementId(d)), g.components, g.donor_scaled(d).data(),
-                    q[0], q[1], value.data());
-    if (!have_first) first = value;
-    have_first = true;
-    basis_at(pt, place[0], place[1], phi.data());
-    for (std::size_t n = 0; n < phi.size(); ++n) {
-      const double weighted = w * phi[n] / factors[n];
-      sums.basis[n] += weighted;
-      for (std::size_t c = 0; c < nc; ++c) sums.product[n * nc + c] += weighted * value[c];
-    }
-    for (std::size_t c = 0; c < nc; ++c) difference[c] += w * (value[c] - first[c]);
+    visit(w, place, d, donor_place(g, d, x, warm, have_warm));
   };
   const int pd = g.donor_space->highest_degree();
   if (g.target_mapped) {
@@ -89,7 +71,75 @@ void ElementTransfer::add_extension(const Group& g, std::int32_t t, std::span<co
       }
     }
   }
+}
+
+void ElementTransfer::add_extension(const Group& g, std::int32_t t, std::span<const Segment> run,
+                                    double area, const Vec2& centre, Accumulators& sums,
+                                    std::span<double> made) {
+  const int pt = g.target_space->degree(ElementId(t));
+  const auto nc = static_cast<std::size_t>(g.components);
+  std::vector<double> value(nc);
+  std::vector<double> first(nc);
+  std::vector<double> difference(nc, 0.0);
+  std::vector<double> phi(static_cast<std::size_t>(bernstein::triangle_size(pt)));
+  bool have_first = false;
+  const auto factors = multinomials(pt);
+  const auto add = [&](double w, const std::array<double, 2>& place, std::int32_t d,
+                       const std::array<double, 2>& q) {
+    evaluate_scaled(g.donor_space->degree(ElementId(d)), g.components, g.donor_scaled(d).data(),
+                    q[0], q[1], value.data());
+    if (!have_first) first = value;
+    have_first = true;
+    basis_at(pt, place[0], place[1], phi.data());
+    for (std::size_t n = 0; n < phi.size(); ++n) {
+      const double weighted = w * phi[n] / factors[n];
+      sums.basis[n] += weighted;
+      for (std::size_t c = 0; c < nc; ++c) sums.product[n * nc + c] += weighted * value[c];
+    }
+    for (std::size_t c = 0; c < nc; ++c) difference[c] += w * (value[c] - first[c]);
+  };
+  extension_points(g, t, run, centre, add);
   for (std::size_t c = 0; c < nc; ++c) made[c] = first[c] * area + difference[c];
+}
+
+void ElementTransfer::extension_blocks(const Group& g, std::int32_t t, std::span<const Segment> run,
+                                       double area, const Vec2& centre, Accumulators& sums,
+                                       ElementBlocks& blocks) {
+  const int pt = g.target_space->degree(ElementId(t));
+  const std::size_t columns = blocks.columns;
+  const auto functions = static_cast<std::size_t>(bernstein::triangle_size(pt));
+  std::vector<double> value(columns);
+  std::vector<double> first(columns);
+  std::vector<double> phi(functions);
+  const auto factors = multinomials(pt);
+  double weight = 0.0;
+  const auto add = [&](double w, const std::array<double, 2>& place, std::int32_t d,
+                       const std::array<double, 2>& q) {
+    std::size_t k = 0;
+    while (k < blocks.donor.size() && blocks.donor[k] != d) ++k;
+    if (k == blocks.donor.size()) {
+      blocks.donor.push_back(d);
+      blocks.product.resize(blocks.product.size() + functions * columns, 0.0);
+      blocks.mass.resize(blocks.mass.size() + columns, 0.0);
+    }
+    evaluate_scaled(g.donor_space->degree(ElementId(d)), g.components, g.donor_scaled(d).data(),
+                    q[0], q[1], value.data());
+    if (k == 0 && weight == 0.0) first = value;
+    weight += w;
+    basis_at(pt, place[0], place[1], phi.data());
+    for (std::size_t n = 0; n < functions; ++n) {
+      const double weighted = w * phi[n] / factors[n];
+      sums.basis[n] += weighted;
+      double* product = blocks.product.data() + (k * functions + n) * columns;
+      for (std::size_t c = 0; c < columns; ++c) product[c] += weighted * value[c];
+    }
+    for (std::size_t c = 0; c < columns; ++c) blocks.mass[k * columns + c] += w * value[c];
+  };
+  extension_points(g, t, run, centre, add);
+  // What the rule misses of the area counts with the first point's values, as in add_extension().
+  for (std::size_t c = 0; c < columns; ++c) blocks.mass[c] += first[c] * (area - weight);
+  blocks.made_donor = blocks.donor;
+  blocks.made = blocks.mass;
 }
 
 }  // namespace bezel::detail

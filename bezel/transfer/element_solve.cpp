@@ -103,16 +103,16 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
   return f;
 }
 
-void ElementTransfer::finish(Group& g, std::int32_t t, Accumulators& sums,
-                             std::span<const double> mass, double area, ElementOutcome& outcome) {
+void ElementTransfer::finish(const Group& g, std::int32_t t, const Accumulators& sums,
+                             std::span<const double> mass, double area, std::span<double> result,
+                             ElementOutcome& outcome) {
   const int p = g.target_space->degree(ElementId(t));
   const auto n = static_cast<std::size_t>(bernstein::triangle_size(p));
-  const auto nc = static_cast<std::size_t>(g.components);
+  const std::size_t nc = mass.size();
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
   const bool full = std::abs(area - own_area) <= 1e-9 * own_area;
   const Factor& f = factor(g, t);
   const auto factors = multinomials(p);
-  const std::span<double> result = g.target_out(t);
   std::vector<double>& rhs = scratch_;
   std::array<Lambda, 3> to_frame{};  // the space's frame seen from the triangle computed on
   bool other_frame = g.target_space->basis() == Basis::physical;

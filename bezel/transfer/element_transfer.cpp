@@ -276,8 +276,10 @@ void ElementTransfer::begin_moments(std::size_t i) {
 }
 
 ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment> segments,
-                                        GivenList& given, std::span<double> made) {
+                                        GivenList& given, std::span<double> made,
+                                        ElementBlocks* blocks) {
   ElementOutcome outcome;
+  if (blocks != nullptr) blocks->reset(static_cast<std::size_t>(groups_[0].components));
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
   std::size_t components = 0;
   for (std::size_t i = 0; i < groups_.size(); ++i) {
@@ -345,7 +347,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
     const Group& g = groups_[i];
     const auto nc = static_cast<std::size_t>(g.components);
     region_mass_.assign(regions_.size() * nc, 0.0);
-    const bool batched = batch && batched_[i] != 0;
+    const bool batched = batch && batched_[i] != 0 && blocks == nullptr;
     if (batched) {
       begin_moments(i);
       add_batched(i, t, segments, region_mass_);
@@ -360,11 +362,15 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
         const bool silent = std::abs(area) <= silent_gap * own_area;
         if (!(silent || policy_ == Uncovered::extend)) continue;
         if (i == 0) extended += area;
+        if (blocks != nullptr) {
+          extension_blocks(g, t, run, area, run_shape(run).centre, sums_[i], *blocks);
+          continue;
+        }
         add_extension(g, t, run, area, run_shape(run).centre, sums_[i], here);
         for (std::size_t c = 0; c < nc; ++c) made[c0 + c] += here[c];
       } else if (!batched) {
         const RunShape shape = run_shape(run);
-        if (by_moments(g, t, d)) {
+        if (blocks == nullptr && by_moments(g, t, d)) {
           begin_moments(i);
           add_pair_moments(g, t, d, shape, moment_sums_[i], here);
         } else {
@@ -375,6 +381,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
       if (d == exterior) continue;
       for (std::size_t c = 0; c < nc; ++c) to[c] = here[c];
       to += components;
+      if (blocks != nullptr) keep_pair(d, sums_[i], here, *blocks);
     }
     c0 += nc;
   }
@@ -386,10 +393,12 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
   const auto start =
       timed ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
   c0 = 0;
-  for (std::size_t i = 0; i < groups_.size(); ++i) {
+  if (blocks != nullptr) finish_blocks(groups_[0], t, sums_[0], integrated, *blocks, outcome);
+  for (std::size_t i = 0; i < groups_.size() && blocks == nullptr; ++i) {
     const auto nc = static_cast<std::size_t>(groups_[i].components);
     if (have_moments_[i] != 0) moments_to_powers(groups_[i], t, moment_sums_[i], sums_[i]);
-    finish(groups_[i], t, sums_[i], std::span(masses_).subspan(c0, nc), integrated, outcome);
+    finish(groups_[i], t, sums_[i], std::span(masses_).subspan(c0, nc), integrated,
+           groups_[i].target_out(t), outcome);
     c0 += nc;
   }
   if (timed) {

@@ -39,6 +39,19 @@ struct GivenList {
   std::vector<double> mass;  ///< per entry all groups' components in order
 };
 
+/// The pairs of one target element kept apart: what each donor's basis functions give it.
+struct ElementBlocks {
+  std::size_t columns = 0;               ///< per pair
+  std::vector<std::int32_t> donor;       ///< per pair, each donor once
+  std::vector<double> product;           ///< per pair [n][column]: integrals of m_n psi
+  std::vector<double> mass;              ///< per pair [column]: mass received
+  std::vector<double> value;             ///< [n][pair][column]: coefficients of the result
+  std::vector<std::int32_t> made_donor;  ///< donors extended into what none covers
+  std::vector<double> made;              ///< per such donor [column]: mass made
+
+  void reset(std::size_t with_columns);
+};
+
 /// Per-thread worker.
 class ElementTransfer {
  public:
@@ -46,9 +59,10 @@ class ElementTransfer {
                   std::span<Group> groups, Uncovered policy);
 
   /// Integrates and solves on target element t; appends to `given`; `made` (all components) is
-  /// added to.
+  /// added to. With `blocks` the only group is one of basis functions, and the pairs' results go
+  /// there instead of being added up.
   ElementOutcome process(std::int32_t t, std::span<const Segment> segments, GivenList& given,
-                         std::span<double> made);
+                         std::span<double> made, ElementBlocks* blocks = nullptr);
 
  private:
   struct Node {
@@ -97,8 +111,21 @@ class ElementTransfer {
                 double area, const Vec2& centre, Accumulators& sums, std::span<double> mass);
   void add_extension(const Group& g, std::int32_t t, std::span<const Segment> run, double area,
                      const Vec2& centre, Accumulators& sums, std::span<double> made);
-  void finish(Group& g, std::int32_t t, Accumulators& sums, std::span<const double> mass,
-              double area, ElementOutcome& outcome);
+  /// Calls visit(weight, target place, point, donor, donor place) at the points of a rule for the
+  /// part of t that no donor covers, the donor being the nearest one.
+  template <class Visit>
+  void extension_points(const Group& g, std::int32_t t, std::span<const Segment> run,
+                        const Vec2& centre, const Visit& visit);
+  void extension_blocks(const Group& g, std::int32_t t, std::span<const Segment> run, double area,
+                        const Vec2& centre, Accumulators& sums, ElementBlocks& blocks);
+  static void keep_pair(std::int32_t d, Accumulators& sums, std::span<const double> mass,
+                        ElementBlocks& blocks);
+  void finish_blocks(const Group& g, std::int32_t t, Accumulators& sums, double area,
+                     ElementBlocks& blocks, ElementOutcome& outcome);
+  /// Solves for mass.size() components into result, [n][component].
+  void finish(const Group& g, std::int32_t t, const Accumulators& sums,
+              std::span<const double> mass, double area, std::span<double> result,
+              ElementOutcome& outcome);
   const MassRule& mass_rule(int degree);
   static bool factorize(std::size_t n, Factor& factor);
   const Factor& factor(const Group& g, std::int32_t t);

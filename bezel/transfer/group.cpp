@@ -33,25 +33,7 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
       donor_mapped(donor_space->basis() == Basis::reference && donor.degree > 1),
       target_mapped(target_space->basis() == Basis::reference && target.degree > 1) {
   for (const Field* f : fields) components += f->components();
-  if (!donor_mapped) {
-    donor_frame.resize(donor.element_count());
-    for (std::size_t e = 0; e < donor_frame.size(); ++e) {
-      donor_frame[e] = donor_space->basis() == Basis::physical
-                           ? donor_space->frame(ElementId(e))
-                           : affine_frame(donor.corners(static_cast<std::int32_t>(e)));
-    }
-  }
-  if (!target_mapped) {
-    target_frame.resize(target.element_count());
-    for (std::size_t e = 0; e < target_frame.size(); ++e) {
-      const auto corners = target.corners(static_cast<std::int32_t>(e));
-      const double corner_area = 0.5 * cross(corners[1] - corners[0], corners[2] - corners[0]);
-      const bool fits = corner_area >= fitting_corners * target.element_area[e];
-      target_frame[e] = target_space->basis() == Basis::reference || fits
-                            ? affine_frame(corners)
-                            : target_space->frame(ElementId(e));
-    }
-  }
+  make_frames(donor, target);
 
   const std::size_t elements = donor.element_count();
   const auto nc = static_cast<std::size_t>(components);
@@ -93,10 +75,85 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
   }
 }
 
+Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
+             std::shared_ptr<const Space> donor_space_in,
+             std::shared_ptr<const Space> target_space_in, int threads)
+    : donor_space(std::move(donor_space_in)),
+      target_space(std::move(target_space_in)),
+      components(bernstein::triangle_size(donor_space->highest_degree())),
+      donor_mapped(donor_space->basis() == Basis::reference && donor.degree > 1),
+      target_mapped(target_space->basis() == Basis::reference && target.degree > 1) {
+  make_frames(donor, target);
+  const auto nc = static_cast<std::size_t>(components);
+  for (int d = 0; d <= donor_space->highest_degree(); ++d) {
+    scaled_offset_.push_back(scaled.size());
+    const auto factors = multinomials(d);
+    for (std::size_t c = 0; c < nc; ++c) {
+      for (std::size_t n = 0; n < factors.size(); ++n) scaled.push_back(n == c ? factors[n] : 0.0);
+    }
+  }
+  const std::vector<double> integrals = basis_integrals(donor_space, threads);
+  donor_mass.assign(donor.element_count() * nc, 0.0);
+  for (std::size_t e = 0; e < donor.element_count(); ++e) {
+    const ElementId id(e);
+    const auto size = static_cast<std::size_t>(bernstein::triangle_size(donor_space->degree(id)));
+    std::copy_n(integrals.begin() + static_cast<std::ptrdiff_t>(donor_space->offset(id)), size,
+                donor_mass.begin() + static_cast<std::ptrdiff_t>(e * nc));
+  }
+}
+
+std::vector<double> basis_integrals(const std::shared_ptr<const Space>& space, int threads) {
+  std::vector<double> integrals(space->coefficient_count());
+  const std::size_t elements = space->mesh()->element_count();
+  const int functions = bernstein::triangle_size(space->highest_degree());
+  const auto has = [&](std::size_t e, int n) {
+    return n < bernstein::triangle_size(space->degree(ElementId(e)));
+  };
+  for (int n = 0; n < functions; ++n) {
+    const auto place = [&](std::size_t e) {
+      return space->offset(ElementId(e)) + static_cast<std::size_t>(n);
+    };
+    std::vector<double> unit(space->coefficient_count(), 0.0);
+    for (std::size_t e = 0; e < elements; ++e) {
+      if (has(e, n)) unit[place(e)] = 1.0;
+    }
+    const std::vector<double> of =
+        element_integrals(Field("unit", space, std::move(unit)), threads);
+    for (std::size_t e = 0; e < elements; ++e) {
+      if (has(e, n)) integrals[place(e)] = of[e];
+    }
+  }
+  return integrals;
+}
+void Group::make_frames(const OverlayMesh& donor, const OverlayMesh& target) {
+  if (!donor_mapped) {
+    donor_frame.resize(donor.element_count());
+    for (std::size_t e = 0; e < donor_frame.size(); ++e) {
+      donor_frame[e] = donor_space->basis() == Basis::physical
+                           ? donor_space->frame(ElementId(e))
+                           : affine_frame(donor.corners(static_cast<std::int32_t>(e)));
+    }
+  }
+  if (!target_mapped) {
+    target_frame.resize(target.element_count());
+    for (std::size_t e = 0; e < target_frame.size(); ++e) {
+      const auto corners = target.corners(static_cast<std::int32_t>(e));
+      const double corner_area = 0.5 * cross(corners[1] - corners[0], corners[2] - corners[0]);
+      const bool fits = corner_area >= fitting_corners * target.element_area[e];
+      target_frame[e] = target_space->basis() == Basis::reference || fits
+                            ? affine_frame(corners)
+                            : target_space->frame(ElementId(e));
+    }
+  }
+}
+
 std::span<const double> Group::donor_scaled(std::int32_t e) const {
   const ElementId id(e);
   const auto nc = static_cast<std::size_t>(components);
-  const auto size = static_cast<std::size_t>(bernstein::triangle_size(donor_space->degree(id)));
+  const int degree = donor_space->degree(id);
+  const auto size = static_cast<std::size_t>(bernstein::triangle_size(degree));
+  if (!scaled_offset_.empty())
+    return {scaled.data() + scaled_offset_[static_cast<std::size_t>(degree)], size * nc};
   return {scaled.data() + donor_space->offset(id) * nc, size * nc};
 }
 

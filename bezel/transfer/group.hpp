@@ -19,6 +19,11 @@ Frame affine_frame(const std::array<Vec2, 3>& corners);
 struct Group {
   Group(const OverlayMesh& donor, const OverlayMesh& target, std::span<const Field* const> fields,
         std::shared_ptr<const Space> target_space);
+  /// The donor's basis functions as components: component c is basis function c of every element
+  /// (zero on elements of lower degree).
+  Group(const OverlayMesh& donor, const OverlayMesh& target,
+        std::shared_ptr<const Space> donor_space, std::shared_ptr<const Space> target_space,
+        int threads);
 
   std::shared_ptr<const Space> donor_space, target_space;
   std::shared_ptr<const Space> continuous_space;  ///< where the result is projected next, or null
@@ -30,8 +35,8 @@ struct Group {
   /// corners where it fits the element (mass matrices are well conditioned there), else the space's
   /// own frame.
   std::vector<Frame> target_frame;
-  std::vector<double>
-      scaled;  ///< donor coefficients times multinomials, per element [component][n]
+  std::vector<double> scaled;      ///< donor coefficients times multinomials, per element
+                                   ///< [component][n]; of basis functions per degree
   std::vector<double> donor_mass;  ///< per element [component]
   /// Coefficients of the monomials in the barycentrics less 1/3, per element [n][component]: of
   /// donors that are not mapped and have at most max_moment_degree.
@@ -43,7 +48,14 @@ struct Group {
     return powers.data() + donor_space->offset(ElementId(e)) * static_cast<std::size_t>(components);
   }
   std::span<double> target_out(std::int32_t e);
+
+ private:
+  void make_frames(const OverlayMesh& donor, const OverlayMesh& target);
+  std::vector<std::size_t> scaled_offset_;  // per degree, for basis functions
 };
+
+/// Integral of each basis function over its element, in the order of the coefficients.
+std::vector<double> basis_integrals(const std::shared_ptr<const Space>& space, int threads);
 
 /// Where point x lies for the polynomial of donor element d: barycentrics 1 and 2 in its frame, or
 /// in the reference triangle when it is mapped. `warm`: the last barycentrics found in d, when

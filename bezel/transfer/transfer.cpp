@@ -18,16 +18,16 @@
 #include "bezel/transfer/limit.hpp"
 #include "bezel/transfer/overlay.hpp"
 #include "bezel/transfer/overlay_mesh.hpp"
+#include "bezel/transfer/sweep.hpp"
+#include "bezel/transfer/weighted.hpp"
 
 namespace bezel {
 namespace {
 
+using detail::chunk_size;
 using detail::exterior;
 using clock = std::chrono::steady_clock;
 
-/// Target elements worked on together: edges inside a chunk are intersected once, edges between two
-/// chunks twice (with the same result), and nothing else is remembered.
-constexpr std::size_t chunk_size = 256;
 /// Uncovered parts below this fraction of an element are rounding.
 constexpr double silent_gap = 1e-10;
 /// Donor area outside the target, and target area without donor for Conserve::total, below this
@@ -271,26 +271,19 @@ std::string uncovered_message(const std::vector<std::pair<ElementId, double>>& e
          "as 0";
 }
 
-}  // namespace
-
-TransferResult transfer(std::span<const Field> donors,
-                        std::shared_ptr<const TriangleMesh> target_mesh,
-                        const TransferOptions& options, const Progress& progress) {
-  const auto start = clock::now();
-  check_arguments(donors, target_mesh, options);
-  const detail::OverlayMesh donor(donors.front().space().mesh(), "donor", options.threads);
-  const detail::OverlayMesh target(target_mesh, "target", options.threads);
-  Plan plan = make_plan(donors, target_mesh, donor, target, options);
-  const detail::FrontSearch search(donor);
+/// One pass over all target elements; `results` by chunk.
+detail::Swept pass(const detail::OverlayMesh& donor, const detail::OverlayMesh& target,
+                   const detail::FrontSearch& search, std::span<detail::Group> groups,
+                   const TransferOptions& options, const Progress& progress,
+                   const detail::VisitBlocks& visit, std::vector<ChunkResult>& results) {
   std::size_t components = 0;
-  for (const detail::Group& g : plan.groups) components += static_cast<std::size_t>(g.components);
-
+  for (const detail::Group& g : groups) components += static_cast<std::size_t>(g.components);
   const std::vector<std::int32_t> order = target.spatial_order();
   const std::size_t chunks = (order.size() + chunk_size - 1) / chunk_size;
-  std::vector<ChunkResult> results(chunks);
-  WorkerPool pool([&] {
-    return std::make_unique<Worker>(donor, target, search, plan.groups, options.uncovered);
-  });
+  results.clear();
+  results.resize(chunks);
+  WorkerPool pool(
+      [&] { return std::make_unique<Worker>(donor, target, search, groups, options.uncovered); });
   std::mutex progress_mutex;
   std::size_t chunks_done = 0;
   parallel_for(
@@ -300,6 +293,7 @@ TransferResult transfer(std::span<const Field> donors,
         ChunkResult& result = results[chunk];
         result.made.assign(components, 0.0);
         std::vector<double> made_here;
+        detail::ElementBlocks blocks;
         const std::size_t begin = chunk * chunk_size,
                           end = std::min(order.size(), (chunk + 1) * chunk_size);
         const auto t0 = clock::now();
@@ -309,7 +303,9 @@ TransferResult transfer(std::span<const Field> donors,
           const std::int32_t t = order[i];
           made_here.assign(components, 0.0);
           const detail::ElementOutcome outcome =
-              worker->element.process(t, worker->segments_of(i - begin), result.given, made_here);
+              worker->element.process(t, worker->segments_of(i - begin), result.given, made_here,
+                                      visit ? &blocks : nullptr);
+          if (visit) visit(i, t, blocks);
           for (std::size_t c = 0; c < components; ++c) result.made[c] += made_here[c];
           if (options.conserve == Conserve::total &&
               outcome.uncovered_area >
@@ -342,12 +338,13 @@ TransferResult transfer(std::span<const Field> donors,
       },
       options.threads);
 
-  TransferResult transferred;
-  TransferReport& report = transferred.report;
-  std::vector<double> given_area(donor.element_count(), 0.0);
-  std::vector<double> given_mass(donor.element_count() * components, 0.0);
-  std::vector<double> made(components, 0.0);
-  double max_mass_defect = 0.0;
+  detail::Swept swept;
+  TransferReport& report = swept.report;
+  std::vector<double>& given_area = swept.given_area;
+  std::vector<double>& given_mass = swept.given_mass;
+  given_area.assign(donor.element_count(), 0.0);
+  given_mass.assign(donor.element_count() * components, 0.0);
+  swept.made.assign(components, 0.0);
   std::int32_t inconsistent = -1;
   std::int64_t inconsistent_count = 0;
   for (const ChunkResult& r : results) {
@@ -358,7 +355,7 @@ TransferResult transfer(std::span<const Field> donors,
         given_mass[d * components + c] += r.given.mass[i * components + c];
       }
     }
-    for (std::size_t c = 0; c < components; ++c) made[c] += r.made[c];
+    for (std::size_t c = 0; c < components; ++c) swept.made[c] += r.made[c];
     report.pairs += r.counts.pairs;
     report.crossings += r.counts.crossings;
     report.tangencies += r.counts.tangencies;
@@ -371,7 +368,7 @@ TransferResult transfer(std::span<const Field> donors,
         std::max(report.max_partition_residual, r.max_partition_residual);
     report.max_joint_gap =
         std::max({report.max_joint_gap, r.max_joint_gap, r.counts.max_joint_gap});
-    max_mass_defect = std::max(max_mass_defect, r.max_mass_defect);
+    swept.max_mass_defect = std::max(swept.max_mass_defect, r.max_mass_defect);
     report.seconds.overlay += r.overlay;
     report.seconds.integrate += r.integrate;
     report.seconds.solve += r.solve;
@@ -392,18 +389,84 @@ TransferResult transfer(std::span<const Field> donors,
                          report.uncovered_elements, area);
   }
 
-  std::vector<double> outside(components, 0.0);
-  detail::ElementMasses element_outside{components, {}, {}};
-  std::vector<double> rest_mass(components);
   for (std::size_t d = 0; d < donor.element_count(); ++d) {
     const double rest = donor.element_area[d] - given_area[d];
     if (rest <= outside_rounding * donor.element_area[d]) continue;
     report.outside_area += rest;
+    swept.outside.push_back(static_cast<std::int32_t>(d));
+  }
+  return swept;
+}
+
+}  // namespace
+
+detail::Swept detail::sweep(const OverlayMesh& donor, const OverlayMesh& target,
+                            std::span<Group> groups, const TransferOptions& options,
+                            const Progress& progress, const VisitBlocks& visit) {
+  const FrontSearch search(donor);
+  std::vector<ChunkResult> results;
+  return pass(donor, target, search, groups, options, progress, visit, results);
+}
+
+void detail::append_reports(const Field& donor, const Field& moved, std::span<const double> outside,
+                            std::span<const double> made, std::span<const double> spread,
+                            std::span<const double> element_defect, int threads,
+                            std::vector<FieldReport>& out) {
+  const auto before = integral(donor, threads);
+  const auto after = integral(moved, threads);
+  const auto size = integral_abs(donor, threads);
+  for (std::size_t c = 0; c < before.size(); ++c) {
+    FieldReport line;
+    line.name = donor.name();
+    line.component = static_cast<int>(c);
+    line.mass_before = before[c];
+    line.mass_after = after[c];
+    line.mass_outside = outside[c];
+    line.mass_made = made[c];
+    if (!spread.empty()) line.mass_spread = spread[c];
+    const double defect =
+        after[c] - (before[c] - line.mass_outside + line.mass_made + line.mass_spread);
+    const double scale = size[c] > 0.0 ? size[c] : 1.0;
+    line.relative_mass_defect = std::abs(defect) / scale;
+    line.max_element_defect = element_defect[c] / scale;
+    const auto range_before = value_range(donor, static_cast<int>(c));
+    const auto range_after = value_range(moved, static_cast<int>(c));
+    line.min_before = range_before.lo;
+    line.max_before = range_before.hi;
+    line.min_after = range_after.lo;
+    line.max_after = range_after.hi;
+    out.push_back(line);
+  }
+}
+
+TransferResult transfer(std::span<const Field> donors,
+                        std::shared_ptr<const TriangleMesh> target_mesh,
+                        const TransferOptions& options, const Progress& progress) {
+  const auto start = clock::now();
+  check_arguments(donors, target_mesh, options);
+  if (options.weight || !options.density.empty())
+    return detail::transfer_weighted(donors, target_mesh, options, progress);
+  const detail::OverlayMesh donor(donors.front().space().mesh(), "donor", options.threads);
+  const detail::OverlayMesh target(target_mesh, "target", options.threads);
+  Plan plan = make_plan(donors, target_mesh, donor, target, options);
+  const detail::FrontSearch search(donor);
+  std::vector<ChunkResult> results;
+  detail::Swept swept = pass(donor, target, search, plan.groups, options, progress, {}, results);
+  const std::size_t components = swept.made.size();
+  TransferResult transferred;
+  transferred.report = std::move(swept.report);
+  TransferReport& report = transferred.report;
+
+  std::vector<double> outside(components, 0.0);
+  detail::ElementMasses element_outside{components, {}, {}};
+  std::vector<double> rest_mass(components);
+  for (const std::int32_t id : swept.outside) {
+    const auto d = static_cast<std::size_t>(id);
     std::size_t c0 = 0;
     for (const detail::Group& g : plan.groups) {
       const auto nc = static_cast<std::size_t>(g.components);
       for (std::size_t c = 0; c < nc; ++c) {
-        rest_mass[c0 + c] = g.donor_mass[d * nc + c] - given_mass[d * components + c0 + c];
+        rest_mass[c0 + c] = g.donor_mass[d * nc + c] - swept.given_mass[d * components + c0 + c];
         outside[c0 + c] += rest_mass[c0 + c];
       }
       c0 += nc;
@@ -488,41 +551,22 @@ TransferResult transfer(std::span<const Field> donors,
         }
       }
       if (bounds) fields[i].emplace(detail::with_coefficients(*fields[i], limited));
-      const auto before = integral(donors[i], options.threads);
-      const auto after = integral(*fields[i], options.threads);
-      const auto size = integral_abs(donors[i], options.threads);
+      std::vector<double> element_defect(own, swept.max_mass_defect);
+      for (std::size_t c = 0; !continuous.empty() && c < own; ++c)
+        element_defect[c] = continuous[k].max_element_change[first + c];
+      detail::append_reports(donors[i], *fields[i], std::span(outside).subspan(c0 + first, own),
+                             std::span(swept.made).subspan(c0 + first, own), spread_mass,
+                             element_defect, options.threads, field_reports[i]);
       for (std::size_t c = 0; c < own; ++c) {
-        FieldReport line;
-        line.name = donors[i].name();
-        line.component = static_cast<int>(c);
-        line.mass_before = before[c];
-        line.mass_after = after[c];
-        line.mass_outside = outside[c0 + first + c];
-        line.mass_made = made[c0 + first + c];
-        line.mass_spread = spread_mass[c];
+        FieldReport& line = field_reports[i][c];
         line.max_spread_change = spread_change[c];
-        const double defect =
-            after[c] - (before[c] - line.mass_outside + line.mass_made + line.mass_spread);
-        line.relative_mass_defect = size[c] > 0.0 ? std::abs(defect) / size[c] : std::abs(defect);
-        double element_defect = max_mass_defect;
-        if (!continuous.empty()) {
-          line.mass_solve = continuous[k].solve[first + c];
-          element_defect = continuous[k].max_element_change[first + c];
-        }
-        line.max_element_defect = size[c] > 0.0 ? element_defect / size[c] : element_defect;
-        const auto range_before = value_range(donors[i], static_cast<int>(c));
-        auto range_after = value_range(*fields[i], static_cast<int>(c));
+        if (!continuous.empty()) line.mass_solve = continuous[k].solve[first + c];
         if (bounds) {
           // Both enclose the values; the limiter's is the sharper one at the bounds.
-          range_after = {std::max(range_after.lo, limited[c].range.lo),
-                         std::min(range_after.hi, limited[c].range.hi)};
+          line.min_after = std::max(line.min_after, limited[c].range.lo);
+          line.max_after = std::min(line.max_after, limited[c].range.hi);
           line.bounds = limited[c].report;
         }
-        line.min_before = range_before.lo;
-        line.max_before = range_before.hi;
-        line.min_after = range_after.lo;
-        line.max_after = range_after.hi;
-        field_reports[i].push_back(line);
       }
       first += own;
     }

@@ -56,6 +56,14 @@ struct TransferOptions {
   Conserve conserve = Conserve::covered;
   Bounds bounds;    ///< kept by the whole of each target polynomial, mass conserved
   int threads = 0;  ///< 0: all; the result does not depend on it
+  /// A polynomial in x and y of degree 0 to 4, not negative on the meshes (it may vanish on lines
+  /// such as an axis): projection and mass are those of the inner product with this weight. For
+  /// axisymmetric fields, the distance from the axis.
+  std::optional<Formula> weight{};
+  /// Name of a scalar donor field (empty: none): every other field u is carried as density * u. The
+  /// integral of density * u is conserved, and u is recovered by the projection whose weight is the
+  /// density on the target, so that a constant u stays constant.
+  std::string density{};
 };
 
 /// The solution of the global mass system of a continuous target.
@@ -71,7 +79,8 @@ struct FieldReport {
   std::string name;
   int component = 0;
   double mass_before = 0,
-         mass_after = 0;    ///< integrals of donor and target field, from their coefficients
+         mass_after = 0;    ///< integrals of donor and target field, from their coefficients, times
+                            ///< weight and density if there are any
   double mass_outside = 0;  ///< donor mass over parts that no target element covers
   double mass_made = 0;     ///< target mass over parts that no donor element covers
   double mass_spread = 0;   ///< mass added at the boundary (Conserve::total)

@@ -6,12 +6,19 @@
 #include "bezel/base/error.hpp"
 #include "bezel/io/msh.hpp"
 #include "bezel/io/native.hpp"
+#include "bezel/io/pvd.hpp"
 #include "bezel/io/vtu.hpp"
 
 namespace bezel::io_fuzz {
 
 bool read_bytes(const std::string& bytes, int format) {
   try {
+    if (format == 3) {
+      for (const TimeStep& step : parse_pvd("fuzz.pvd", bytes))
+        if (!std::isfinite(step.time) || step.file.empty())
+          throw std::logic_error("a step without time or file");
+      return true;
+    }
     const Dataset data = format == 0   ? files::read_msh("fuzz.msh", bytes)
                          : format == 1 ? files::read_vtu("fuzz.vtu", bytes)
                                        : files::read_native("fuzz.bzl", bytes);

@@ -7,7 +7,7 @@
 
 namespace bezel::io_fuzz {
 
-/// Gives the bytes to the reader of a format (0: MSH, 1: VTU, 2: native).
+/// Gives the bytes to the reader of a format (0: MSH, 1: VTU, 2: native, 3: PVD).
 /// @return whether they were read; throws what is not an InputError
 bool read_bytes(const std::string& bytes, int format);
 

@@ -10,6 +10,7 @@
 #include "bezel/base/random.hpp"
 #include "bezel/io/msh.hpp"
 #include "bezel/io/native.hpp"
+#include "bezel/io/pvd.hpp"
 #include "bezel/io/vtu.hpp"
 #include "tests/fuzz/io_fuzz.hpp"
 #include "tests/unit/io/datasets.hpp"
@@ -43,6 +44,8 @@ std::vector<Seed> seeds() {
       all.push_back({"vtu", files::write_vtu(data, {{}, bezier, !bezier}, lost), 1});
     all.push_back({"native", files::write_native(data), 2});
   }
+  all.push_back(
+      {"pvd", encode_pvd({{0.0, "run_0.vtu"}, {0.5, "run_1.vtu"}, {1e-3, "folder/run_2.vtu"}}), 3});
   // Text arrays and raw appended data, which the writer does not use.
   const char* const cells =
       "<Cells><DataArray type=\"Int32\" Name=\"connectivity\">0 1 2 1 3 2</DataArray>"

@@ -141,6 +141,44 @@ TEST_F(AtomicFileTest, AFailingRenameLeavesNothing) {
   EXPECT_THROW(file.commit(), InternalError);
 }
 
+TEST_F(AtomicFileTest, ASealedFileAppearsOnCommit) {
+  AtomicFile file(path("a"));
+  file.write("one");
+  file.seal();
+  EXPECT_FALSE(fs::exists(path("a")));
+  EXPECT_THROW(file.write("two"), InternalError);
+  file.commit();
+  EXPECT_EQ(read_file(path("a")), "one");
+}
+
+TEST_F(AtomicFileTest, ASetAppearsTogether) {
+  write_file(path("b"), "old");
+  {
+    FileSet set;
+    set.add(path("a"), "one");
+    set.add(path("b")).write("two");
+    EXPECT_FALSE(fs::exists(path("a")));
+  }
+  EXPECT_EQ(file_count(), 1U);
+  EXPECT_EQ(read_file(path("b")), "old");
+  FileSet set;
+  for (int i = 0; i < 2000; ++i) set.add(path(std::to_string(i)), "x");  // more than open files
+  set.add(path("b"), "two");
+  set.commit();
+  EXPECT_EQ(file_count(), 2001U);
+  EXPECT_EQ(read_file(path("b")), "two");
+}
+
+TEST_F(AtomicFileTest, ASetWhoseRenamingFailsLeavesNothing) {
+  FileSet set;
+  set.add(path("a"), "one");
+  set.add(path("b"), "two");
+  fs::create_directories(path("b"));  // a file cannot be renamed over a folder
+  EXPECT_THROW(set.commit(), InputError);
+  EXPECT_FALSE(fs::exists(path("a")));
+  EXPECT_TRUE(fs::is_directory(path("b")));
+}
+
 TEST_F(AtomicFileTest, SaysWhyItCannotRead) {
   EXPECT_EQ(input_error([&] { read_file(path("none")); }),
             path("none") + ": cannot be read: no such file or directory");

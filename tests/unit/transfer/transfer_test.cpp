@@ -279,6 +279,28 @@ TEST_F(Discs, ExtendKeepsConstantsAndTheBalance) {
   }
 }
 
+TEST(Transfer, ConstantsComeBackOnPartlyCoveredElements) {
+  // The target's corners stick out of the donor by 3e-4.
+  for (int g = 1; g <= 3; ++g) {
+    const auto donor = grid_mesh(3, g, 1.0, bend(0.15, 0.12));
+    const auto target = grid_mesh(4, g, 1.0, turn(0.3, 0.8, bend(0.1, -0.15)));
+    const Formula constant("3.25");
+    for (const Basis from : {Basis::reference, Basis::physical}) {
+      const Field f = sample("u", Space::discontinuous(donor, 2, from), one(constant));
+      for (const Basis to : {Basis::reference, Basis::physical}) {
+        TransferOptions options;
+        options.uncovered = Uncovered::extend;
+        options.same_basis = false;
+        options.basis = to;
+        const TransferResult result = transfer(std::span(&f, 1), target, options);
+        EXPECT_GT(result.report.uncovered_area, 1e-8);
+        EXPECT_LE(error_norms(result.fields[0], one(constant)).max, 1e-13)
+            << "degree " << g << " basis " << static_cast<int>(from) << static_cast<int>(to);
+      }
+    }
+  }
+}
+
 TEST_F(Discs, ZeroMakesNothing) {
   const auto donor = disc(2, 0.4, 1);
   const auto target = disc(2, 0.35, 2);

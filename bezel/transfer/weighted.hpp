@@ -1,0 +1,17 @@
+#pragma once
+// Internal: transfer in a weighted inner product, and of densities with what they carry.
+
+#include <memory>
+#include <span>
+
+#include "bezel/transfer/transfer.hpp"
+
+namespace bezel::detail {
+
+/// transfer() with a weight or a density: the products of the fields with them are transferred, and
+/// the fields recovered element by element.
+TransferResult transfer_weighted(std::span<const Field> donors,
+                                 const std::shared_ptr<const TriangleMesh>& target,
+                                 const TransferOptions& options, const Progress& progress);
+
+}  // namespace bezel::detail
