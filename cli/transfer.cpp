@@ -384,9 +384,10 @@ void add_transfer(CLI::App& app, Context& context) {
       ->add_option("--matrix", o.matrix,
                    "Write the transfer as a sparse matrix there too (Matrix Market)")
       ->type_name("FILE");
-  ->add_option("--conserve", o.conserve,
-               "Which mass is kept: covered (before - outside + made) or total (the difference "
-               "goes to triangles at the boundary; constants change there)")
+  command
+      ->add_option("--conserve", o.conserve,
+                   "Which mass is kept: covered (before - outside + made) or total (the difference "
+                   "goes to triangles at the boundary; constants change there)")
       ->check(CLI::IsMember({"covered", "total"}))
       ->type_name("WHAT")
       ->capture_default_str();
