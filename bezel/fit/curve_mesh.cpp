@@ -67,7 +67,7 @@ class Curving {
     out.straight_edges = straight_edges_;
     out.largest_move = largest_move_;
     double squares = 0.0;
-    for (const CurvedEdge& edge : edges_) {
+    for (const FittedEdge& edge : edges_) {
       out.distance_max = std::max(out.distance_max, edge.errors.distance_max);
       squares += edge.errors.distance_l2 * edge.errors.distance_l2;
     }
@@ -301,7 +301,7 @@ class Curving {
   std::vector<Vec2> vertex_;
   std::vector<Vec2> bend_;  // g - 1 per edge, in its canonical direction
   std::vector<EdgePart> parts_;
-  std::vector<CurvedEdge> edges_;
+  std::vector<FittedEdge> edges_;
   std::vector<NodeId> elements_;
   std::size_t count_ = 0, straight_edges_ = 0;
   double largest_move_ = 0.0;

@@ -21,7 +21,7 @@ struct CurveMeshOptions {
 };
 
 /// A boundary edge that lies on a curve.
-struct CurvedEdge {
+struct FittedEdge {
   EdgeId edge;         ///< of the new mesh
   std::size_t curve;   ///< position among the curves
   double t0, t1;       ///< parameters of the curve at the ends, t0 < t1 unless through its seam
@@ -30,7 +30,7 @@ struct CurvedEdge {
 
 struct CurvedMesh {
   TriangleMesh mesh;
-  std::vector<CurvedEdge> edges;
+  std::vector<FittedEdge> edges;
   std::size_t straight_edges = 0;  ///< boundary edges on none of the curves: left straight
   double largest_move = 0.0;       ///< of a vertex onto its curve
   double distance_max = 0.0;       ///< largest distance of an edge to its curve
