@@ -65,7 +65,8 @@ class ElementOverlay {
 
   /// Forgets the edges computed so far (memory stays bounded by a chunk of elements).
   void begin_chunk();
-  /// The segments of all T n D of target element t, those of each donor together.
+  /// The segments of all T n D of target element t, those of each donor together,
+  /// the exterior's first.
   /// counts: contacts are counted when first computed in a chunk by their owner (the edge's left or
   /// only element).
   std::span<const Segment> segments(std::int32_t t, OverlayCounts& counts);

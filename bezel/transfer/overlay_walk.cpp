@@ -206,7 +206,7 @@ bool ElementOverlay::walk_inside(std::int32_t t) {
   return true;
 }
 
-// In the order in which the donors appear.
+// In the order in which the donors appear, the part that no donor covers first.
 void ElementOverlay::group_segments() {
   if (++group_now_ == 0) {
     std::fill(group_.begin(), group_.end(), Group{});
@@ -214,6 +214,11 @@ void ElementOverlay::group_segments() {
   }
   group_end_.clear();
   slots_.clear();
+  if (std::any_of(segments_.begin(), segments_.end(),
+                  [](const Segment& s) { return s.donor == exterior; })) {
+    group_[0] = {group_now_, 0};
+    group_end_.push_back(0);
+  }
   for (const Segment& segment : segments_) {
     Group& group = group_[static_cast<std::size_t>(segment.donor + 1)];
     if (group.stamp != group_now_) {
