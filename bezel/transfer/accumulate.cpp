@@ -13,14 +13,28 @@
 #include "hwy/highway.h"
 // clang-format on
 
+#ifndef BEZEL_TRANSFER_ACCUMULATE_ONCE
+#define BEZEL_TRANSFER_ACCUMULATE_ONCE
+namespace bezel::detail {
+inline constexpr int max_accumulated_degree = 10;
+inline constexpr int max_size = bernstein::triangle_size(max_accumulated_degree);
+
+/// values: x, y with the powers of the degree, then d/du of x and y, d/dv of x and y with those of
+/// one degree less; each times its multinomial.
+struct ScaledMap {
+  double x[2][max_size], du[2][max_size], dv[2][max_size];
+};
+
+}  // namespace bezel::detail
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace bezel::detail::HWY_NAMESPACE {
 
 // Plain loops over `lanes` points: the compiler turns them into this target's vectors. Nothing is
 // fused
 // (-ffp-contract=off) and sums stay per lane, so every target gives the same bits.
-constexpr int max_degree = 10;
-constexpr int max_size = bernstein::triangle_size(max_degree);
+constexpr int max_degree = max_accumulated_degree;
 
 template <int fixed>
 inline void powers(int runtime_degree, const double* u, const double* v, double (*out)[lanes]) {
@@ -123,6 +137,52 @@ void accumulate_target(int target_degree, int donor_degree, int components, cons
                            mass);
 }
 
+template <int fixed>
+void map_points_fixed(int runtime_degree, const ScaledMap& map, std::size_t blocks, const double* u,
+                      const double* v, double* x, double* y, double* det) {
+  const int d = fixed >= 0 ? fixed : runtime_degree;
+  const int size = bernstein::triangle_size(d), lower = bernstein::triangle_size(d - 1);
+  constexpr int room = fixed >= 0 ? bernstein::triangle_size(fixed) : max_size;
+  double phi[room][lanes];
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::size_t at = b * lanes;
+    powers<fixed>(d, u + at, v + at, phi);
+    for (int k = 0; k < 2; ++k) {
+      double sum[lanes] = {};
+      for (int n = 0; n < size; ++n)
+        for (std::size_t l = 0; l < lanes; ++l) sum[l] += map.x[k][n] * phi[n][l];
+      double* to = (k == 0 ? x : y) + at;
+      for (std::size_t l = 0; l < lanes; ++l) to[l] = sum[l];
+    }
+    powers<(fixed > 0 ? fixed - 1 : fixed)>(d - 1, u + at, v + at, phi);
+    double slope[4][lanes] = {};
+    for (int n = 0; n < lower; ++n) {
+      for (std::size_t l = 0; l < lanes; ++l) {
+        slope[0][l] += map.du[0][n] * phi[n][l];
+        slope[1][l] += map.du[1][n] * phi[n][l];
+        slope[2][l] += map.dv[0][n] * phi[n][l];
+        slope[3][l] += map.dv[1][n] * phi[n][l];
+      }
+    }
+    for (std::size_t l = 0; l < lanes; ++l)
+      det[at + l] = slope[0][l] * slope[3][l] - slope[1][l] * slope[2][l];
+  }
+}
+
+void map_points_target(int degree, const ScaledMap& map, std::size_t blocks, const double* u,
+                       const double* v, double* x, double* y, double* det) {
+  switch (degree) {
+    case 1:
+      return map_points_fixed<1>(1, map, blocks, u, v, x, y, det);
+    case 2:
+      return map_points_fixed<2>(2, map, blocks, u, v, x, y, det);
+    case 3:
+      return map_points_fixed<3>(3, map, blocks, u, v, x, y, det);
+    default:
+      return map_points_fixed<-1>(degree, map, blocks, u, v, x, y, det);
+  }
+}
+
 }  // namespace bezel::detail::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -135,6 +195,31 @@ void accumulate(int target_degree, int donor_degree, int components, const doubl
                 const PointBlock& points, double* product, double* basis, double* mass) {
   HWY_DYNAMIC_DISPATCH(accumulate_target)
   (target_degree, donor_degree, components, scaled, points, product, basis, mass);
+}
+
+HWY_EXPORT(map_points_target);
+
+void map_points(int degree, const Vec2* control, std::size_t blocks, const double* u,
+                const double* v, double* x, double* y, double* det) {
+  ScaledMap map;
+  const auto factors = multinomials(degree);
+  const auto lower = multinomials(degree - 1);
+  for (int k = 0, n = 0, m = 0; k <= degree; ++k) {
+    for (int j = 0; j <= degree - k; ++j, ++n) {
+      const Vec2& p = control[n];
+      for (int c = 0; c < 2; ++c) map.x[c][n] = factors[static_cast<std::size_t>(n)] * p[c];
+      if (j + k == degree) continue;
+      const double factor = degree * lower[static_cast<std::size_t>(m)];
+      const Vec2& next = control[bernstein::triangle_index(degree, j + 1, k)];
+      const Vec2& above = control[bernstein::triangle_index(degree, j, k + 1)];
+      for (int c = 0; c < 2; ++c) {
+        map.du[c][m] = factor * (next[c] - p[c]);
+        map.dv[c][m] = factor * (above[c] - p[c]);
+      }
+      ++m;
+    }
+  }
+  HWY_DYNAMIC_DISPATCH(map_points_target)(degree, map, blocks, u, v, x, y, det);
 }
 
 void evaluate_scaled(int degree, int components, const double* scaled, double u, double v,

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <span>
 
+#include "bezel/numeric/vec.hpp"
+
 namespace bezel::detail {
 
 /// Points per block; arrays are padded to whole blocks with weight 0.
@@ -23,6 +25,13 @@ struct PointBlock {
 /// The order of the additions does not depend on the machine's vector width: same bits everywhere.
 void accumulate(int target_degree, int donor_degree, int components, const double* scaled,
                 const PointBlock& points, double* product, double* basis, double* mass);
+
+/// A map of the reference triangle at many points: x, y and its Jacobian determinant there. The
+/// same bits on every machine.
+/// @param control  triangle_size(degree) control points, 1 <= degree <= 10
+/// @param u, v     with x, y, det arrays of blocks * lanes values
+void map_points(int degree, const Vec2* control, std::size_t blocks, const double* u,
+                const double* v, double* x, double* y, double* det);
 
 /// values[c] = f_c at one point.
 void evaluate_scaled(int degree, int components, const double* scaled, double u, double v,

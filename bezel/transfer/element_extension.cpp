@@ -55,9 +55,8 @@ void ElementTransfer::extension_points(const Group& g, std::int32_t t, std::span
   if (g.target_mapped) {
     const int degree = pt + 2 * (target_.degree - 1) + pd + inexact_extra;
     reference_nodes(target_, t, run, false, degree);
-    reference_fan(
-        target_, t, reference_centre(), degree,
-        [&](double w, const std::array<double, 2>& q, const MapPoint& map) { add(w, q, map.x); });
+    reference_fan(target_, t, reference_centre(), degree,
+                  [&](double w, const std::array<double, 2>& q, const Vec2& x) { add(w, q, x); });
   } else {
     const int degree = pt + pd;
     boundary_nodes(run, degree);

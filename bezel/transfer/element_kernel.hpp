@@ -2,6 +2,7 @@
 // Internal: shared by the .cpp files of ElementTransfer.
 
 #include "bezel/bernstein/triangle_kernel.hpp"
+#include "bezel/transfer/accumulate.hpp"
 #include "bezel/transfer/element_transfer.hpp"
 
 namespace bezel::detail {
@@ -24,24 +25,36 @@ inline MapPoint map_point(const OverlayMesh& mesh, std::int32_t e, const std::ar
   return {value.value, value.du, value.dv, cross(value.du, value.dv)};
 }
 
-/// Calls visit(weight, q, map) at the points of the fan of rays from `centre` to the reference
-/// nodes, the weight being that of the plane's area: exact for polynomials of the given degree in
-/// the reference coordinates.
+/// Calls visit(weight, q, x) at the points q of the fan of rays from `centre` to the reference
+/// nodes, x being the element's point there and the weight that of the plane's area: exact for
+/// polynomials of the given degree in the reference coordinates.
 template <class Visit>
 void ElementTransfer::reference_fan(const OverlayMesh& mesh, std::int32_t element,
                                     const std::array<double, 2>& centre, int degree,
                                     const Visit& visit) {
   const IntervalRule& radial = rule((degree + 3) / 2);
-  reserve_points(nodes_.size() * radial.node.size());
+  const std::size_t count = nodes_.size() * radial.node.size();
+  const std::size_t blocks = (count + lanes - 1) / lanes;
+  reserve_points(count);
+  for (std::vector<double>* array : {&fan_w_, &fan_u_, &fan_v_, &fan_x_, &fan_y_, &fan_det_})
+    if (array->size() < blocks * lanes) array->resize(2 * blocks * lanes);
+  std::size_t at = 0;
   for (const Node& node : nodes_) {
     const std::array<double, 2> arm{node.q[0] - centre[0], node.q[1] - centre[1]};
     const double kappa = arm[0] * node.dq[1] - arm[1] * node.dq[0];
-    for (std::size_t i = 0; i < radial.node.size(); ++i) {
+    for (std::size_t i = 0; i < radial.node.size(); ++i, ++at) {
       const double tau = radial.node[i];
-      const std::array<double, 2> q{centre[0] + tau * arm[0], centre[1] + tau * arm[1]};
-      const MapPoint map = map_point(mesh, element, q);
-      visit(kappa * radial.weight[i] * tau * map.det, q, map);
+      fan_w_[at] = kappa * radial.weight[i] * tau;
+      fan_u_[at] = centre[0] + tau * arm[0];
+      fan_v_[at] = centre[1] + tau * arm[1];
     }
+  }
+  for (; at < blocks * lanes; ++at) fan_u_[at] = fan_v_[at] = 0.0;
+  map_points(mesh.degree, mesh.element(element).data(), blocks, fan_u_.data(), fan_v_.data(),
+             fan_x_.data(), fan_y_.data(), fan_det_.data());
+  for (std::size_t i = 0; i < count; ++i) {
+    visit(fan_w_[i] * fan_det_[i], std::array<double, 2>{fan_u_[i], fan_v_[i]},
+          Vec2{{fan_x_[i], fan_y_[i]}});
   }
 }
 

@@ -163,6 +163,26 @@ std::array<double, 2> ElementTransfer::donor_place(const Group& g, std::int32_t 
   return detail::donor_place(g, donor_, d, x, warm, have_warm);
 }
 
+void ElementTransfer::donor_places(const Group& g, std::int32_t d, std::size_t first) {
+  std::array<double, 3> warm{};
+  bool have_warm = false;
+  const bool together = g.donor_mapped;
+  if (together) {
+    const Frame guess = affine_frame(donor_.corners(d));
+    start_.clear();
+    for (const Vec2& x : plane_) start_.push_back(guess.lambda(x));
+    inverse_.resize(plane_.size());
+    invert(donor_.degree, donor_.element(d), plane_, start_, inverse_);
+  }
+  for (std::size_t i = 0; i < plane_.size(); ++i) {
+    const auto place = together && inverse_[i].converged
+                           ? std::array<double, 2>{inverse_[i].lambda[1], inverse_[i].lambda[2]}
+                           : donor_place(g, d, plane_[i], warm, have_warm);
+    du_[first + i] = place[0];
+    dv_[first + i] = place[1];
+  }
+}
+
 void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
                                std::span<const Segment> run, double area, const Vec2& centre,
                                Accumulators& sums, std::span<double> mass) {
@@ -212,13 +232,14 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
     const int degree =
         pt + 2 * (target_.degree - 1) + (g.donor_mapped ? pd + inexact_extra : pd * target_.degree);
     reference_nodes(target_, t, run, false, degree);
-    std::array<double, 3> warm{};
-    bool have_warm = false;
+    const std::size_t first = count_;
+    plane_.clear();
     reference_fan(target_, t, reference_centre(), degree,
-                  [&](double w, const std::array<double, 2>& q, const MapPoint& map) {
-                    const auto place = donor_place(g, d, map.x, warm, have_warm);
-                    push(w, q[0], q[1], place[0], place[1]);
+                  [&](double w, const std::array<double, 2>& q, const Vec2& x) {
+                    push(w, q[0], q[1], 0.0, 0.0);
+                    plane_.push_back(x);
                   });
+    donor_places(g, d, first);
     flush(g, d, pt, sums);
   } else {
     // The donor's mean is carried exactly by the physical fan, only the rest by the rule in
@@ -232,8 +253,8 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
     Accumulators mapped;
     mapped.reset(functions, nc);
     reference_fan(donor_, d, reference_centre(), degree,
-                  [&](double w, const std::array<double, 2>& q, const MapPoint& map) {
-                    const auto place = target_place(g, t, map.x);
+                  [&](double w, const std::array<double, 2>& q, const Vec2& x) {
+                    const auto place = target_place(g, t, x);
                     push(w, place[0], place[1], q[0], q[1]);
                   });
     flush(g, d, pt, mapped);
@@ -260,7 +281,7 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
   const double third = 1.0 / 3.0;
   double weight = 0.0;
   reference_fan(donor_, d, {third, third}, degree,
-                [&](double w, const std::array<double, 2>& q, const MapPoint&) {
+                [&](double w, const std::array<double, 2>& q, const Vec2&) {
                   weight += w;
                   push(w, third, third, q[0], q[1]);
                 });

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bezel/field/field.hpp"
+#include "bezel/geometry/triangle.hpp"
 #include "bezel/numeric/quadrature.hpp"
 #include "bezel/transfer/group.hpp"
 #include "bezel/transfer/mass_rule.hpp"
@@ -140,6 +141,8 @@ class ElementTransfer {
     dv_[i] = dv;
   }
   std::array<double, 2> target_place(const Group& g, std::int32_t t, const Vec2& x) const;
+  /// Fills in where the points of plane_, the quadrature points from number `first` on, lie in d.
+  void donor_places(const Group& g, std::int32_t d, std::size_t first);
   std::array<double, 2> donor_place(const Group& g, std::int32_t d, const Vec2& x,
                                     std::array<double, 3>& warm, bool& have_warm) const;
   void reference_nodes(const OverlayMesh& mesh, std::int32_t element, std::span<const Segment> run,
@@ -173,6 +176,10 @@ class ElementTransfer {
   std::vector<double> region_mass_;            // of one group, [region][component]
   std::vector<double> w_, tu_, tv_, du_, dv_;  // quadrature points, the first count_ in use
   std::size_t count_ = 0;
+  std::vector<double> fan_w_, fan_u_, fan_v_, fan_x_, fan_y_, fan_det_;  // of reference_fan
+  std::vector<Vec2> plane_;  // points whose places in a donor element are wanted
+  std::vector<Lambda> start_;
+  std::vector<InverseResult> inverse_;
   std::vector<Accumulators> sums_, moment_sums_;
   std::vector<std::uint8_t> have_moments_;  // by group: for this element
   std::vector<std::uint8_t> batched_;       // by group: goes by add_batched

@@ -8,7 +8,9 @@
 
 #include "bezel/base/random.hpp"
 #include "bezel/bernstein/triangle.hpp"
+#include "bezel/bernstein/triangle_kernel.hpp"
 #include "hwy/targets.h"
+#include "support/simd_targets.hpp"
 
 namespace bezel::detail {
 namespace {
@@ -109,6 +111,35 @@ TEST(Accumulate, BasisAndMultinomialsSumToOneAndPowersOfThree) {
     double total = 0.0;
     for (const double m : multinomials(d)) total += m;
     EXPECT_EQ(total, std::pow(3.0, d));
+  }
+}
+
+TEST(MapPoints, EqualTheMapPointByPoint) {
+  for (int degree = 1; degree <= 10; ++degree) {
+    RandomStream random("map points", static_cast<std::uint64_t>(degree));
+    std::vector<Vec2> control(static_cast<std::size_t>(bernstein::triangle_size(degree)));
+    for (Vec2& p : control) p = Vec2{{random.uniform(-1, 1), random.uniform(-1, 1)}};
+    constexpr std::size_t blocks = 3;
+    std::vector<double> u(blocks * lanes), v(blocks * lanes);
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      u[i] = random.uniform(0, 1);
+      v[i] = random.uniform(0, 1) * (1 - u[i]);
+    }
+    std::vector<std::vector<double>> seen;
+    support::on_every_target([&] {
+      std::vector<double> out(3 * u.size());
+      map_points(degree, control.data(), blocks, u.data(), v.data(), out.data(),
+                 out.data() + u.size(), out.data() + 2 * u.size());
+      seen.push_back(out);
+      EXPECT_EQ(seen.back(), seen.front());
+    });
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      const auto map = bernstein::kernel::evaluate_gradient_unchecked<Vec2, double>(
+          degree, control.data(), {1 - u[i] - v[i], u[i], v[i]});
+      EXPECT_NEAR(seen[0][i], map.value[0], 1e-14);
+      EXPECT_NEAR(seen[0][u.size() + i], map.value[1], 1e-14);
+      EXPECT_NEAR(seen[0][2 * u.size() + i], cross(map.du, map.dv), 1e-12 * degree);
+    }
   }
 }
 
