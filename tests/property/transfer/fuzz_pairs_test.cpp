@@ -13,7 +13,10 @@ TEST_P(FuzzedPairs, NoWrongAreaGoesUnreported) {
   int refused = 0;
   int compared = 0;
   int undecided = 0;
-  for (int i = 0; i < 20; ++i) {
+  // The exact kernel takes a second a pair where edges have another parametrisation.
+  const int pairs =
+      mesh_pair(static_cast<std::uint64_t>(GetParam())).kind == "other parametrisation" ? 4 : 20;
+  for (int i = 0; i < pairs; ++i) {
     const auto seed = static_cast<std::uint64_t>(i * mesh_pair_kinds + GetParam());
     const FuzzVerdict verdict = judge(mesh_pair(seed));
     EXPECT_EQ(verdict.complaint, "") << verdict.kind << ", seed " << seed;
@@ -24,8 +27,8 @@ TEST_P(FuzzedPairs, NoWrongAreaGoesUnreported) {
   RecordProperty("refused", refused);
   RecordProperty("undecided", undecided);
   // The test is about what was compared: most pairs of meshes, nearly all pairs of elements.
-  EXPECT_LE(refused, 10);
-  EXPECT_GT(compared, 40 * (20 - refused) / 20);
+  EXPECT_LE(refused, pairs / 2);
+  EXPECT_GT(compared, 2 * (pairs - refused));
   EXPECT_LE(undecided, compared / 20);
 }
 
