@@ -33,10 +33,10 @@ class Curve {
 
 /// A simple common point: one curve passes through the other; or an end point of one on the other.
 ///
-/// End points have s or t exactly 0 or 1. Without a coincidence distance they count only when they
-/// are on the other curve exactly. All parameters are then functions of the curves alone, to the
-/// last bit where exact numbers were needed: all edges ending in one vertex get the same bits on a
-/// crossed edge. With a distance, an end point within it counts, and its parameter on the other
+/// End points, and only they, have s or t exactly 0 or 1. Without a coincidence distance they count
+/// only when they are on the other curve exactly; all parameters are functions of the curves alone,
+/// to the last bit where exact numbers were needed: edges ending in one vertex get the same bits on
+/// a crossed edge. With a distance, an end point within it counts, and its parameter on the other
 /// curve comes from a computation that sees only that point and that curve.
 struct Crossing {
   double s, t;            ///< parameters on the first and second curve, in [0, 1]

@@ -333,7 +333,11 @@ class Search {
           {to_double(first), to_double(last), to_double(t_first), to_double(t_last), 0.0});
     if (order == 0) {
       const double s = to_double(first), t = to_double(t_first);
-      resolution_.roots.push_back({s, t, s, s, t, t, 0, 0, 0.0, true, true, false});
+      const auto is_end = [&](const Ratio& x) {
+        return compare(x, zero) == 0 || compare(x, one) == 0;
+      };
+      resolution_.roots.push_back(
+          {s, t, s, s, t, t, 0, 0, 0.0, is_end(first), is_end(t_first), false});
     }
   }
 
@@ -452,7 +456,16 @@ class Search {
     return e == 0 ? p : Vec2{{std::ldexp(p.x(), e), std::ldexp(p.y(), e)}};
   }
 
-  Crossing crossing(const ResolvedRoot& root) const {
+  /// A parameter that is no end of its curve is not reported as one: consumers take exactly 0 and 1
+  /// for the end points, so it stays a rounding away from them.
+  static double reported(double x, bool end) {
+    constexpr double least = std::numeric_limits<double>::denorm_min(), most = 1.0 - 0x1p-53;
+    return end ? x : std::clamp(x, least, most);
+  }
+
+  Crossing crossing(ResolvedRoot root) const {
+    root.s = reported(root.s, root.s_end);
+    root.t = reported(root.t, root.t_end);
     const CurvePoint p = curve_point(degree(a_), near_a_.data(), root.s);
     const CurvePoint q = curve_point(degree(b_), near_b_.data(), root.t);
     Crossing c{};
@@ -479,7 +492,8 @@ class Search {
     for (std::size_t i = known_; i < resolution_.roots.size(); ++i) {
       const ResolvedRoot& root = resolution_.roots[i];
       if (root.order != 1 && !root.s_end && !root.t_end)
-        out_.tangencies.push_back({root.s, root.t, root.order, root.contact_sign});
+        out_.tangencies.push_back(
+            {reported(root.s, false), reported(root.t, false), root.order, root.contact_sign});
       else
         out_.crossings.push_back(crossing(root));
     }

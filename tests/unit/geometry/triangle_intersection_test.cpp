@@ -209,6 +209,29 @@ TEST(TriangleIntersectionTest, CrossingsRoundedToACornerAreNotTakenForOne) {
   }
 }
 
+// A corner on a side so near to its end that the parameter there, rounded, would be the end's.
+TEST(TriangleIntersectionTest, ACornerBesideACornerIsNotTakenForIt) {
+  const Points cubic{{{-0x1.fffffffffffffp-1, -0x1.fffffffffffffp-2}},
+                     {{-0x1.b798ac1f7ae7ep-1, -0x1.feceb41d5d513p-2}},
+                     {{-0x1.6f31583ef5cfap-1, -0x1.fd9d683abaa23p-2}},
+                     {{-0x1.26ca045e70b78p-1, -0x1.fc6c1c5817f32p-2}},
+                     {{-1, -0x1.5555555555556p-2}},
+                     {{-0x1.b798ac1f7ae7dp-1, -0x1.54240972b2a65p-2}},
+                     {{-0x1.6f31583ef5cfap-1, -0x1.52f2bd900ff78p-2}},
+                     {{-1, -0x1.5555555555559p-3}},
+                     {{-0x1.b798ac1f7ae7dp-1, -0x1.52f2bd900ff75p-3}},
+                     {{-1, 0x1.db74d5d36d63cp-56}}};
+  const Points straight{{{-1, 0}}, {{-0x1.8bf74aaff3167p-2, 0x1.01c9f1d3f4066p-1}}, {{-1, 0.5}}};
+  EXPECT_LE(total(intersect(3, cubic, 1, straight).polygons), 1e-17);
+  EXPECT_LE(total(intersect(1, straight, 3, cubic).polygons), 1e-17);
+  const Points along{cubic[9], cubic[7], cubic[4], cubic[0]};  // from the corner down
+  const Points side{{{-1, 0.5}}, {{-1, 0}}};
+  const bezel::CurveIntersections found = bezel::intersect(along, side);
+  ASSERT_EQ(found.crossings.size(), 1U);
+  EXPECT_EQ(found.crossings[0].s, 0.0);
+  EXPECT_EQ(found.crossings[0].t, 1.0 - 0x1p-53);  // 1 - 5e-17 rounds to 1
+}
+
 TEST(TriangleIntersectionTest, StorageIsReused) {
   bezel::TriangleIntersector intersector;
   bezel::TriangleIntersections out;
