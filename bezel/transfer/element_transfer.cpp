@@ -357,6 +357,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
       continue;
     }
     outcome.covered_area += area;
+    given.target.push_back(t);
     given.donor.push_back(d);
     given.area.push_back(area);
     ++outcome.pairs;

@@ -238,7 +238,7 @@ void ElementOverlay::donor_edges_inside(std::int32_t t) {
   marks_.clear();
   covered_.clear();
   for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
-    const Record& record = records_[static_cast<std::size_t>(record_place_[side.edge.index()].at)];
+    const Record& record = known_record(side.edge);
     for (std::uint32_t i = record.contact_begin; i < record.contact_end; ++i) {
       const Contact& c = contacts_[i];
       const bool inner = is_inner(c.r) && is_inner(c.s);

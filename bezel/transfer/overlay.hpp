@@ -109,6 +109,10 @@ class ElementOverlay {
   };
 
   const Record& record_of(std::int32_t t, std::int32_t edge);
+  /// Of an edge that record_of was asked for in this chunk.
+  const Record& known_record(EdgeId edge) const {
+    return records_[static_cast<std::size_t>(record_place_[edge.index()].at)];
+  }
   void find_candidates(std::int32_t t);
   void overlay_edge(std::int32_t edge, Record& record);
   // Ordinary edges and elements (overlay_walk.cpp).

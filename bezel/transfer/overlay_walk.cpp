@@ -152,7 +152,7 @@ bool ElementOverlay::walk_inside(std::int32_t t) {
   };
   marks_.clear();
   for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
-    const Record& record = records_[static_cast<std::size_t>(record_place_[side.edge.index()].at)];
+    const Record& record = known_record(side.edge);
     for (std::uint32_t i = record.contact_begin; i < record.contact_end; ++i) {
       const Contact& c = contacts_[i];
       marks_.push_back(

@@ -311,7 +311,6 @@ detail::Swept pass(const detail::OverlayMesh& donor, const detail::OverlayMesh& 
               outcome.uncovered_area >
                   outside_rounding * target.element_area[static_cast<std::size_t>(t)])
             result.element_made.add(t, made_here);
-          result.given.target.resize(result.given.donor.size(), t);
           result.solve += outcome.solve_seconds;
           result.counts.pairs += outcome.pairs;
           result.max_partition_residual =

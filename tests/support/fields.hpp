@@ -2,8 +2,10 @@
 // Fields for tests of bounds and transfers.
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -25,6 +27,29 @@ inline Field checkerboard(const std::shared_ptr<const TriangleMesh>& mesh, int d
     }
   }
   return Field("zero or one", space, c);
+}
+
+inline std::span<const Formula> one(const Formula& f) {
+  return {&f, 1};
+}
+
+/// Largest difference of two fields of one component on one mesh, at a lattice of points in each
+/// element.
+inline double largest_difference(const Field& a, const Field& b) {
+  double largest = 0.0;
+  double va = 0.0;
+  double vb = 0.0;
+  for (std::size_t e = 0; e < a.mesh().element_count(); ++e) {
+    for (int k = 0; k <= 4; ++k) {
+      for (int j = 0; j <= 4 - k; ++j) {
+        const Lambda l{(4 - j - k) / 4.0, j / 4.0, k / 4.0};
+        a.evaluate(ElementId(e), l, {&va, 1});
+        b.evaluate(ElementId(e), l, {&vb, 1});
+        largest = std::max(largest, std::abs(va - vb));
+      }
+    }
+  }
+  return largest;
 }
 
 /// Least and largest value of a field of one component at the points of a lattice in each element.

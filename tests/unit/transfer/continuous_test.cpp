@@ -8,6 +8,7 @@
 
 #include "bezel/mesh/generate.hpp"
 #include "bezel/transfer/transfer.hpp"
+#include "support/fields.hpp"
 #include "support/meshes.hpp"
 
 namespace bezel {
@@ -15,34 +16,15 @@ namespace {
 
 using test::bend;
 using test::grid_mesh;
+using test::largest_difference;
+using test::one;
 using test::turn;
-
-std::span<const Formula> one(const Formula& f) {
-  return {&f, 1};
-}
 
 TransferOptions to_continuous(int degree = -1) {
   TransferOptions options;
   options.continuity = Continuity::continuous;
   options.degree = degree;
   return options;
-}
-
-double largest_difference(const Field& a, const Field& b) {
-  double largest = 0.0;
-  double va = 0.0;
-  double vb = 0.0;
-  for (std::size_t e = 0; e < a.mesh().element_count(); ++e) {
-    for (int k = 0; k <= 4; ++k) {
-      for (int j = 0; j <= 4 - k; ++j) {
-        const Lambda l{(4 - j - k) / 4.0, j / 4.0, k / 4.0};
-        a.evaluate(ElementId(e), l, {&va, 1});
-        b.evaluate(ElementId(e), l, {&vb, 1});
-        largest = std::max(largest, std::abs(va - vb));
-      }
-    }
-  }
-  return largest;
 }
 
 enum class Kind { discontinuous_reference, discontinuous_physical, continuous, element_constants };

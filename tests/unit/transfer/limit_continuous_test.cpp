@@ -17,12 +17,9 @@ namespace {
 using test::bend;
 using test::checkerboard;
 using test::grid_mesh;
+using test::one;
 using test::sampled_range;
 using test::turn;
-
-std::span<const Formula> one(const Formula& f) {
-  return {&f, 1};
-}
 
 TransferOptions continuous(const Bounds& bounds) {
   TransferOptions options;

@@ -18,12 +18,9 @@ namespace {
 using test::bend;
 using test::checkerboard;
 using test::grid_mesh;
+using test::one;
 using test::sampled_range;
 using test::turn;
-
-std::span<const Formula> one(const Formula& f) {
-  return {&f, 1};
-}
 
 struct Case {
   int g;

@@ -6,6 +6,7 @@
 
 #include "bezel/numeric/quadrature.hpp"
 #include "bezel/transfer/transfer.hpp"
+#include "support/fields.hpp"
 #include "support/meshes.hpp"
 
 namespace bezel {
@@ -13,11 +14,8 @@ namespace {
 
 using test::bend;
 using test::grid_mesh;
+using test::one;
 using test::PlaneMap;
-
-std::span<const Formula> one(const Formula& f) {
-  return {&f, 1};
-}
 
 /// [0, 2] x [-1, 1]: x is the distance from the axis x = 0, which is a side.
 PlaneMap beside_axis(const PlaneMap& map) {
