@@ -20,6 +20,9 @@ namespace bezel::detail {
 /// Highest field degree that is integrated by moments.
 inline constexpr int max_moment_degree = 3;
 
+/// Points that are worked on together.
+inline constexpr std::size_t moment_lanes = 8;
+
 /// Gauss points on a Bezier piece, for all monomials up to a degree.
 struct PieceTable {
   /// @param degree   of the piece, 1..10
