@@ -60,22 +60,12 @@ struct Worker {
       : overlay(donor, target, search), element(donor, target, search, groups, policy) {}
   detail::ElementOverlay overlay;
   detail::ElementTransfer element;
-  std::vector<detail::Segment> segments;  // of a chunk's elements
-  std::vector<std::size_t> segment_end;
+  detail::OverlayList overlays;  // of a chunk's elements
 
-  void find_segments(std::span<const std::int32_t> elements, detail::OverlayCounts& counts) {
+  void find_overlays(std::span<const std::int32_t> elements, detail::OverlayCounts& counts) {
     overlay.begin_chunk();
-    segments.clear();
-    segment_end.clear();
-    for (const std::int32_t t : elements) {
-      const auto own = overlay.segments(t, counts);
-      segments.insert(segments.end(), own.begin(), own.end());
-      segment_end.push_back(segments.size());
-    }
-  }
-  std::span<const detail::Segment> segments_of(std::size_t i) const {
-    const std::size_t begin = i == 0 ? 0 : segment_end[i - 1];
-    return std::span(segments).subspan(begin, segment_end[i] - begin);
+    overlays.clear();
+    for (const std::int32_t t : elements) overlay.add(t, overlays, counts);
   }
 };
 
@@ -297,14 +287,13 @@ detail::Swept pass(const detail::OverlayMesh& donor, const detail::OverlayMesh& 
         const std::size_t begin = chunk * chunk_size,
                           end = std::min(order.size(), (chunk + 1) * chunk_size);
         const auto t0 = clock::now();
-        worker->find_segments(std::span(order).subspan(begin, end - begin), result.counts);
+        worker->find_overlays(std::span(order).subspan(begin, end - begin), result.counts);
         const auto t1 = clock::now();
         for (std::size_t i = begin; i < end; ++i) {
           const std::int32_t t = order[i];
           made_here.assign(components, 0.0);
-          const detail::ElementOutcome outcome =
-              worker->element.process(t, worker->segments_of(i - begin), result.given, made_here,
-                                      visit ? &blocks : nullptr);
+          const detail::ElementOutcome outcome = worker->element.process(
+              t, worker->overlays[i - begin], result.given, made_here, visit ? &blocks : nullptr);
           if (visit) visit(i, t, blocks);
           for (std::size_t c = 0; c < components; ++c) result.made[c] += made_here[c];
           if (options.conserve == Conserve::total &&
@@ -596,14 +585,14 @@ std::vector<OverlapArea> overlap_areas(std::shared_ptr<const TriangleMesh> donor
       chunks,
       [&](std::size_t chunk) {
         auto worker = pool.take();
-        worker->overlay.begin_chunk();
         detail::OverlayCounts counts;
-        for (std::size_t i = chunk * chunk_size;
-             i < std::min(order.size(), (chunk + 1) * chunk_size); ++i) {
+        const std::size_t begin = chunk * chunk_size,
+                          end = std::min(order.size(), (chunk + 1) * chunk_size);
+        worker->find_overlays(std::span(order).subspan(begin, end - begin), counts);
+        for (std::size_t i = begin; i < end; ++i) {
           const std::int32_t t = order[i];
           detail::GivenList given;
-          const auto outcome =
-              worker->element.process(t, worker->overlay.segments(t, counts), given, {});
+          const auto outcome = worker->element.process(t, worker->overlays[i - begin], given, {});
           if (outcome.inconsistent) {
             throw NumericsError("the common refinement is inconsistent at target triangle " +
                                 std::to_string(t));
