@@ -15,6 +15,9 @@ namespace {
 /// Gaps below this fraction of an element are rounding and are extended whatever the policy.
 constexpr double silent_gap = 1e-10;
 
+/// Donors smaller than this fraction of the target's area get their areas from rays of their own.
+constexpr double small_area = 1.0 / 256.0;
+
 constexpr std::uint64_t timed_elements = 16;
 
 double signed_step(const Part& part) {
@@ -87,6 +90,12 @@ void ElementTransfer::boundary_nodes(std::span<const Segment> run, int degree) {
       nodes_.push_back(node);
     }
   }
+  for (const Bridge& bridge : bridges_) {
+    Node node;
+    node.x = origin_ + bridge.from + 0.5 * bridge.step;
+    node.dx = bridge.step;
+    nodes_.push_back(node);
+  }
 }
 
 // The same nodes in the reference coordinates of one element of `mesh`: its own sides are straight
@@ -138,6 +147,17 @@ void ElementTransfer::reference_nodes(const OverlayMesh& mesh, std::int32_t elem
       node.dq = {cross(node.dx, map.dv) * scale, cross(map.du, node.dx) * scale};
       nodes_.push_back(node);
     }
+  }
+  for (const Bridge& bridge : bridges_) {
+    Node node;
+    node.x = origin_ + bridge.from + 0.5 * bridge.step;
+    node.dx = bridge.step;
+    std::array<double, 3> lambda{};
+    if (!invert_map(mesh.degree, mesh.element(element), node.x, lambda, false)) continue;
+    node.q = {lambda[1], lambda[2]};
+    const MapPoint map = map_point(mesh, element, node.q);
+    node.dq = {cross(node.dx, map.dv) / map.det, cross(map.du, node.dx) / map.det};
+    nodes_.push_back(node);
   }
 }
 
@@ -337,20 +357,26 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
   for (const BatchRegion& region : regions_) {
     const std::int32_t d = segments[region.begin].donor;
     double area = 0.0, gap = 0.0;
-    if (batch) {
+    bool bridged = false;
+    // About a place in the target element, areas are known to its rounding.
+    const bool small =
+        d != exterior && donor_.element_area[static_cast<std::size_t>(d)] < own_area * small_area;
+    if (batch && !small && !segments[region.begin].loose) {
       Vec2 open;
       for (std::uint32_t k = region.begin; k < region.end; ++k) {
         area += batch_.area[k];
         open += Vec2{{batch_.step_x[k], batch_.step_y[k]}};
       }
       gap = norm(open);
+      bridges_.clear();
     } else {
       const RunShape shape = run_shape(segments.subspan(region.begin, region.end - region.begin));
       area = shape.area;
       gap = shape.gap;
+      bridged = !bridges_.empty();
     }
     note_region(t, d, area, gap, outcome);
-    shapes_.push_back({d, area});
+    shapes_.push_back({d, area, bridged});
     total += area;
     if (d == exterior) {
       outcome.uncovered_area = std::max(area, 0.0);
@@ -408,7 +434,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
     c0 += nc;
   }
   outcome.partition_residual = std::abs(total - own_area) / own_area;
-  if (outcome.partition_residual > largest_joint_gap) outcome.inconsistent = true;
+  if (outcome.partition_residual > largest_partition_residual(t)) outcome.inconsistent = true;
   const double integrated = outcome.covered_area + extended;
   // Reading the clock takes as long as a small solution: every so many elements are measured.
   const bool timed = elements_++ % timed_elements == 0;

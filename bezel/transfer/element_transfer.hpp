@@ -87,9 +87,11 @@ class ElementTransfer {
     Vec2 centre;    // mean of the corners
     Vec2 relative;  // the same, from origin_
     double area;
-    double gap;  // by how much the pieces fail to close
+    double gap;  // the widest open joint
   };
+  /// Also fills piece_control_ and bridges_.
   RunShape run_shape(std::span<const Segment> run);
+  double bridge_joints();
   // By moments (element_moments.cpp).
   static bool by_moments(const Group& g, std::int32_t t, std::int32_t d);
   const PieceTable& piece_table(int degree, int moments);
@@ -105,6 +107,7 @@ class ElementTransfer {
   /// Group i on all regions. @param mass  [region][component]
   void add_batched(std::size_t i, std::int32_t t, std::span<const Segment> segments,
                    std::span<double> mass);
+  double largest_partition_residual(std::int32_t t) const;
   void note_region(std::int32_t t, std::int32_t d, double area, double gap,
                    ElementOutcome& outcome) const;
   void flush(const Group& g, std::int32_t d, int target_degree, Accumulators& sums);
@@ -163,6 +166,12 @@ class ElementTransfer {
   Vec2 origin_;  // of the pieces' control points, on the target element
   std::vector<Vec2> piece_control_, local_control_;
   std::vector<int> piece_degree_;
+  // Straight pieces across open joints of the region run_shape was asked for last, from origin_.
+  struct Bridge {
+    Vec2 from, step;
+  };
+  std::vector<Bridge> bridges_;
+  std::vector<Vec2> piece_starts_, piece_ends_;
   std::vector<MomentPiece> moment_pieces_;
   std::vector<std::unique_ptr<PieceTable>> tables_;
   std::vector<double> moments_;
@@ -171,6 +180,7 @@ class ElementTransfer {
   struct RegionShape {
     std::int32_t donor;
     double area;
+    bool bridged;
   };
   std::vector<RegionShape> shapes_;
   std::vector<double> region_mass_;            // of one group, [region][component]

@@ -129,8 +129,11 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
   for (const std::int32_t e : candidate_edges_) {
     const Box2& other = donor_.edge_box[static_cast<std::size_t>(e)];
     if (!generous.overlaps(other)) continue;
+    const CurveCache& facing = donor_.edge_cache[static_cast<std::size_t>(e)];
     const double distance =
-        coincidence_distance(own, donor_.edge_cache[static_cast<std::size_t>(e)]);
+        coincidence_distance(std::min(target_.edge_width[static_cast<std::size_t>(edge)],
+                                      donor_.edge_width[static_cast<std::size_t>(e)]),
+                             std::max(own.magnitude, facing.magnitude));
     const Vec2 room{{distance, distance}};
     Box2 wide = box;
     wide.lo -= room;
@@ -139,8 +142,15 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
     IntersectOptions options;
     options.coincidence_distance = distance;
     const auto donor_curve = donor_.edge(e);
-    intersect(own, donor_.edge_cache[static_cast<std::size_t>(e)], options, found_);
-    for (const Crossing& c : found_.crossings) {
+    intersect(own, facing, options, found_);
+    // Edges that are nearly parallel may be known to touch much better than where.
+    const auto opposite = [&](double r, double s) {
+      const Vec2 p = curve_point(curve, r);
+      if (norm(p - curve_point(donor_curve, s)) <= 2.0 * distance) return s;
+      return foot_point(donor_curve, p).s;
+    };
+    for (Crossing& c : found_.crossings) {
+      c.t = opposite(c.s, c.t);
       const auto [pa, da] = edge_point(curve, c.s);
       const auto [pb, db] = edge_point(donor_curve, c.t);
       const double sine = cross(da, db);
@@ -153,11 +163,11 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
       ++record.crossings;
     }
     for (const Tangency& c : found_.tangencies) {
-      contacts_.push_back({c.s, c.t, e, 0});
+      contacts_.push_back({c.s, opposite(c.s, c.t), e, 0});
       ++record.tangencies;
     }
     for (const Overlap& c : found_.overlaps) {
-      coincidences_.push_back({c.s0, c.s1, c.t0, c.t1, e});
+      coincidences_.push_back({c.s0, c.s1, opposite(c.s0, c.t0), opposite(c.s1, c.t1), e});
       ++record.overlaps;
     }
     for (const UnresolvedBox& c : found_.unresolved) {
@@ -373,9 +383,11 @@ std::span<const Segment> ElementOverlay::segments(std::int32_t t, OverlayCounts&
       segments_.push_back(segment);
     }
   }
-  if (!(walked && walk_inside(t))) {
+  const bool plain = walked && walk_inside(t);
+  if (!plain) {
     find_candidates(t);
     donor_edges_inside(t);
+    for (Segment& segment : segments_) segment.loose = true;
   }
   group_segments();
   return grouped_;

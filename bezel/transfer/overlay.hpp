@@ -20,15 +20,18 @@
 
 namespace bezel::detail {
 
-/// Curves nearer to each other than this fraction of the smaller one count as coincident. Pieces
-/// merged so leave joints open by at most that much; the sums over a whole element close exactly
-/// all the same.
+/// Curves nearer to each other than this fraction of the thinnest element beside them count as
+/// coincident. Pieces merged so leave joints open by at most that much; the sums over a whole
+/// element close exactly all the same.
 inline constexpr double coincidence_fraction = 1e-13;
 /// ... and never less than the rounding of the coordinates themselves.
 inline constexpr double coordinate_rounding = 32.0 * 0x1p-53;
+inline double coincidence_distance(double smallest_width, double largest_coordinate) {
+  return std::max(coincidence_fraction * smallest_width, coordinate_rounding * largest_coordinate);
+}
+/// Of two edges when their elements' widths are not looked at: never less than with them.
 inline double coincidence_distance(const CurveCache& a, const CurveCache& b) {
-  return std::max(coincidence_fraction * std::min(a.diameter, b.diameter),
-                  coordinate_rounding * std::max(a.magnitude, b.magnitude));
+  return coincidence_distance(std::min(a.diameter, b.diameter), std::max(a.magnitude, b.magnitude));
 }
 /// A contact tells sides only when it is this far (in parameter) from edge ends and from other
 /// contacts.
@@ -48,9 +51,10 @@ struct Part {
 /// has both parts.
 struct Segment {
   std::int32_t donor =
-      exterior;  ///< donor element, or exterior: the part of T that no donor covers
-  Part target;   ///< edge -1 when the piece is no part of T's boundary
-  Part source;   ///< the same for the donor's boundary
+      exterior;        ///< donor element, or exterior: the part of T that no donor covers
+  Part target;         ///< edge -1 when the piece is no part of T's boundary
+  Part source;         ///< the same for the donor's boundary
+  bool loose = false;  ///< the element was not in general position: joints may be open a little
 };
 
 struct OverlayCounts {

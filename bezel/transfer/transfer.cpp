@@ -379,7 +379,7 @@ detail::Swept pass(const detail::OverlayMesh& donor, const detail::OverlayMesh& 
     throw NumericsError(
         "the common refinement is inconsistent at target triangle " + std::to_string(inconsistent) +
         " and " + std::to_string(inconsistent_count - 1) + " others (largest open joint " +
-        std::to_string(report.max_joint_gap) + " of the smaller element); no field was made");
+        number(report.max_joint_gap) + " of the smaller element); no field was made");
   }
   if (!report.uncovered_elements.empty() && options.uncovered == Uncovered::error) {
     double area = 0.0;
