@@ -339,6 +339,28 @@ const ElementOverlay::Record& ElementOverlay::record_of(std::int32_t t, std::int
   return records_[static_cast<std::size_t>(place.at)];
 }
 
+// Where a vertex hangs, a long donor edge with an element on one side only lies along short ones
+// with elements on the other.
+std::pair<std::size_t, std::int32_t> ElementOverlay::facing_coincidence(const Record& record,
+                                                                        const Piece& piece,
+                                                                        bool reversed) const {
+  const auto donor_of = [&](const Coincidence& c) {
+    const bool same_direction = c.s0 < c.s1;
+    return donor_
+        .edge_sides[static_cast<std::size_t>(c.donor_edge)][same_direction != reversed ? 0 : 1];
+  };
+  const auto first = static_cast<std::size_t>(piece.coincidence);
+  const std::int32_t donor = donor_of(coincidences_[first]);
+  if (donor != exterior) return {first, donor};
+  const double middle = 0.5 * (piece.r0 + piece.r1);
+  for (std::size_t k = first + 1; k < record.coincidence_end; ++k) {
+    const Coincidence& c = coincidences_[k];
+    if (c.r0 >= middle) break;
+    if (c.r1 > middle && donor_of(c) != exterior) return {k, donor_of(c)};
+  }
+  return {first, exterior};
+}
+
 std::span<const Segment> ElementOverlay::segments(std::int32_t t, OverlayCounts& counts) {
   segments_.clear();
   bool walked = true;
@@ -360,7 +382,8 @@ std::span<const Segment> ElementOverlay::segments(std::int32_t t, OverlayCounts&
       segment.target = {side.edge.value, piece.r0, piece.r1};
       segment.donor = piece.donor;
       if (piece.coincidence >= 0) {
-        const Coincidence& c = coincidences_[static_cast<std::size_t>(piece.coincidence)];
+        const auto [which, facing] = facing_coincidence(record, piece, side.reversed);
+        const Coincidence& c = coincidences_[which];
         // Parameters of the piece on the donor edge: the piece may be cut finer than the
         // coincidence.
         const auto map = [&](double r) {
@@ -372,9 +395,7 @@ std::span<const Segment> ElementOverlay::segments(std::int32_t t, OverlayCounts&
               std::min(c.s0, c.s1), std::max(c.s0, c.s1));
         };
         segment.source = {c.donor_edge, map(piece.r0), map(piece.r1)};
-        const bool same_direction = c.s0 < c.s1;
-        segment.donor = donor_.edge_sides[static_cast<std::size_t>(c.donor_edge)]
-                                         [same_direction != side.reversed ? 0 : 1];
+        segment.donor = facing;
       }
       if (side.reversed) {
         std::swap(segment.target.from, segment.target.to);

@@ -128,6 +128,10 @@ class ElementOverlay {
                        std::int32_t donor_edge, double& gap);
   void next_walk();
   void group_segments();
+  /// The coincidence of a piece whose donor edge has an element on the target element's side, and
+  /// that element.
+  std::pair<std::size_t, std::int32_t> facing_coincidence(const Record& record, const Piece& piece,
+                                                          bool reversed) const;
   std::int32_t locate_piece(std::span<const Vec2> curve, double r0, double r1) const;
   std::int32_t best_donor(const Vec2& p, double& margin) const;
   bool inside_target(std::int32_t t, std::span<const Vec2> curve, double s0, double s1) const;
