@@ -13,6 +13,9 @@
 namespace bezel::detail {
 namespace {
 
+/// Donors smaller than this fraction of the target's area get their areas from rays of their own.
+constexpr double small_area = 1.0 / 256.0;
+
 Vec2 mix(const Vec2& a, const Vec2& b, double s) {
   return (1.0 - s) * a + s * b;
 }
@@ -63,13 +66,15 @@ Vec2 to_barycentric(const Frame& frame, const Vec2& x) {
   return {{dot(frame.gradient[1], x), dot(frame.gradient[2], x)}};
 }
 
-/// The largest area between a step and an edge of the element, over the element's diameter.
-double joint_width(const OverlayMesh& mesh, std::int32_t e, const Vec2& step) {
-  const auto corners = mesh.corners(e);
-  double largest = 0.0;
-  for (std::size_t k = 0; k < 3; ++k)
-    largest = std::max(largest, std::abs(cross(step, corners[(k + 1) % 3] - corners[k])));
-  return largest / mesh.element_diameter[static_cast<std::size_t>(e)];
+TargetPlace place_of(const Frame& frame) {
+  const Vec2 &first = frame.gradient[1], &second = frame.gradient[2];
+  const double area = 1.0 / cross(first, second);
+  return {frame.centre,
+          first,
+          second,
+          Vec2{{second[1] * area, -second[0] * area}},
+          Vec2{{-first[1] * area, first[0] * area}},
+          area};
 }
 
 }  // namespace
@@ -94,7 +99,7 @@ ElementTransfer::RunShape ElementTransfer::run_shape(std::span<const Segment> ru
   shape.relative = centre;
   shape.centre = origin_ + centre;
   bridges_.clear();
-  shape.gap = run.front().loose ? bridge_joints() : norm(sum);
+  shape.gap = loose_ ? bridge_joints() : norm(sum);
   double twice = 0.0;
   Vec2* p = piece_control_.data();
   for (const int degree : piece_degree_) {
@@ -104,72 +109,6 @@ ElementTransfer::RunShape ElementTransfer::run_shape(std::span<const Segment> ru
   }
   shape.area = 0.5 * twice;
   return shape;
-}
-
-// Where curves nearly coincide the pieces meet only to within the coincidence distance. Each end is
-// joined to the nearest start. Neighbouring regions join the same points, so their bridges cancel
-// in every sum over an element of either mesh, and closed regions have areas and masses that do not
-// depend on where rays start.
-double ElementTransfer::bridge_joints() {
-  piece_starts_.clear();
-  piece_ends_.clear();
-  const Vec2* p = piece_control_.data();
-  double extent = 0.0;
-  for (const int degree : piece_degree_) {
-    piece_starts_.push_back(p[0]);
-    piece_ends_.push_back(p[degree]);
-    extent = std::max({extent, std::abs(p[0].x()), std::abs(p[0].y())});
-    p += degree + 1;
-  }
-  const auto before = [](const Vec2& a, const Vec2& b) {
-    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
-  };
-  std::sort(piece_starts_.begin(), piece_starts_.end(), before);
-  std::sort(piece_ends_.begin(), piece_ends_.end(), before);
-  // The starts are sorted by x: the search goes outwards until x alone is too far.
-  const auto take_nearest = [&](const Vec2& end, double limit) {
-    const auto middle = std::lower_bound(piece_starts_.begin(), piece_starts_.end(), end, before);
-    auto best = piece_starts_.end();
-    for (auto i = middle; i != piece_starts_.end() && i->x() - end.x() <= limit; ++i) {
-      const double distance = norm(*i - end);
-      if (distance > limit) continue;
-      limit = distance;
-      best = i;
-      if (distance == 0.0) break;
-    }
-    for (auto i = middle; i != piece_starts_.begin() && limit > 0.0;) {
-      --i;
-      if (end.x() - i->x() > limit) break;
-      const double distance = norm(*i - end);
-      if (distance > limit) continue;
-      limit = distance;
-      best = i;
-    }
-    return best;
-  };
-  const double rounding = 0x1p-51 * extent;  // of a point reached along two curves
-  std::size_t open = 0;
-  for (const Vec2& end : piece_ends_) {
-    const auto start = take_nearest(end, rounding);
-    if (start == piece_starts_.end()) {
-      piece_ends_[open++] = end;
-    } else {
-      piece_starts_.erase(start);
-    }
-  }
-  piece_ends_.resize(open);
-  double widest = 0.0;
-  for (const Vec2& end : piece_ends_) {
-    const auto start = take_nearest(end, std::numeric_limits<double>::infinity());
-    const Vec2 step = *start - end;
-    piece_starts_.erase(start);
-    bridges_.push_back({end, step});
-    piece_control_.push_back(end);
-    piece_control_.push_back(end + step);
-    piece_degree_.push_back(1);
-    widest = std::max(widest, norm(step));
-  }
-  return widest;
 }
 
 bool ElementTransfer::by_moments(const Group& g, std::int32_t t, std::int32_t d) {
@@ -187,8 +126,8 @@ const PieceTable& ElementTransfer::piece_table(int degree, int moments) {
 
 // In the target's barycentrics about the region's centre; piece_control_ holds the pieces about it.
 void ElementTransfer::add_pair_moments(const Group& g, std::int32_t t, std::int32_t d,
-                                       const RunShape& shape, Accumulators& sums,
-                                       std::span<double> mass) {
+                                       const RunShape& shape, const double* base,
+                                       Accumulators& sums, std::span<double> mass) {
   const int degree = g.target_space->degree(ElementId(t));
   const Frame& target = g.target_frame[static_cast<std::size_t>(t)];
   const Frame& donor = g.donor_frame[static_cast<std::size_t>(d)];
@@ -218,8 +157,8 @@ void ElementTransfer::add_pair_moments(const Group& g, std::int32_t t, std::int3
   place.in_target = {in_target[0], in_target[1]};
   place.in_donor = {in_donor[0], in_donor[1]};
   place.to_donor = {first[0], second[0], first[1], second[1]};
-  add_region(degree, place, moments_.data(), g.components, g.donor_powers(d), sums.product.data(),
-             sums.basis.data(), mass.data());
+  add_region(degree, place, moments_.data(), g.components, g.donor_powers(d), base,
+             sums.product.data(), sums.basis.data(), mass.data());
 }
 
 bool ElementTransfer::can_batch(const Group& g) {
@@ -229,34 +168,24 @@ bool ElementTransfer::can_batch(const Group& g) {
 }
 
 TargetPlace ElementTransfer::target_place(const Group& g, std::int32_t t) {
-  const Frame& frame = g.target_frame[static_cast<std::size_t>(t)];
-  const Vec2 &first = frame.gradient[1], &second = frame.gradient[2];
-  const double area = 1.0 / cross(first, second);
-  return {frame.centre,
-          first,
-          second,
-          Vec2{{second[1] * area, -second[0] * area}},
-          Vec2{{-first[1] * area, first[0] * area}},
-          area};
+  return place_of(g.target_frame[static_cast<std::size_t>(t)]);
 }
 
-void ElementTransfer::fill_batch(std::span<const Segment> segments) {
+void ElementTransfer::fill_batch(std::span<const BoundaryPiece> pieces) {
   const int degree = target_.degree;
-  const std::size_t points = static_cast<std::size_t>(degree) + 1, count = segments.size();
-  batch_.resize(count, degree, 2 * max_moment_degree);
+  const std::size_t points = static_cast<std::size_t>(degree) + 1, count = pieces.size();
+  batch_.resize(count, degree);
   const std::size_t stride = batch_.stride;
   const Vec2* const curves[2] = {target_.edge_control.data(), donor_.edge_control.data()};
   double *from = batch_.from.data(), *to = batch_.to.data();
   double *x = batch_.x.data(), *y = batch_.y.data();
   for (std::size_t i = 0; i < stride; ++i) {
     // The padding repeats the last piece.
-    const Segment& segment = segments[i < count ? i : count - 1];
-    const std::size_t source = segment.target.edge < 0 ? 1 : 0;
-    const Part* const parts[2] = {&segment.target, &segment.source};
-    const Part& part = *parts[source];
-    const Vec2* p = curves[source] + static_cast<std::size_t>(part.edge) * points;
-    from[i] = part.from;
-    to[i] = part.to;
+    const BoundaryPiece& piece = pieces[i < count ? i : count - 1];
+    const Vec2* p =
+        curves[piece.source ? 1 : 0] + static_cast<std::size_t>(piece.part.edge) * points;
+    from[i] = piece.part.from;
+    to[i] = piece.part.to;
     for (std::size_t k = 0; k < points; ++k) {
       x[k * stride + i] = p[k].x();
       y[k * stride + i] = p[k].y();
@@ -264,70 +193,111 @@ void ElementTransfer::fill_batch(std::span<const Segment> segments) {
   }
 }
 
-// Partitions close to the rounding of the coordinates, which is large beside a thin element's
-// width.
-double ElementTransfer::largest_partition_residual(std::int32_t t) const {
-  const Box2& box = target_.element_box[static_cast<std::size_t>(t)];
-  return largest_joint_gap +
-         coordinate_rounding * geometry_kernel::largest_coordinate(box) / target_.element_width(t);
+std::span<const Segment> ElementTransfer::run_of(const ElementPieces& own, std::size_t k) {
+  if (!have_segments_) {
+    have_segments_ = true;
+    collect_segments(own, segments_);
+    run_end_.clear();
+    std::size_t end = 0;
+    for (const std::int32_t d : own.donors) {
+      while (end < segments_.size() && segments_[end].donor == d) ++end;
+      run_end_.push_back(end);
+    }
+  }
+  const std::size_t begin = k == 0 ? 0 : run_end_[k - 1];
+  return std::span<const Segment>(segments_).subspan(begin, run_end_[k] - begin);
 }
 
-// Nothing is decided better than the coincidence distance allows. An area may be off by that times
-// the perimeter. Nearly parallel edges meet at a point that is known to within that distance over
-// their angle, so an open joint is measured by the area that it opens along an element's edges: up
-// to 142 times the distance in 40000 pairs of thin elements and elements far from the origin.
-void ElementTransfer::note_region(std::int32_t t, std::int32_t d, double area, double gap,
-                                  ElementOutcome& outcome) const {
-  double size = target_.element_diameter[static_cast<std::size_t>(t)];
-  double smaller = target_.element_area[static_cast<std::size_t>(t)];
-  double width = target_.element_width(t);
-  if (d != exterior) {
-    size = std::min(size, donor_.element_diameter[static_cast<std::size_t>(d)]);
-    smaller = std::min(smaller, donor_.element_area[static_cast<std::size_t>(d)]);
-    width = std::min(width, donor_.element_width(d));
+bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, std::size_t first,
+                                    ElementOutcome& outcome) {
+  area_.clear();
+  bridged_.assign(own.donors.size(), 0);
+  const bool batch = donor_.degree == target_.degree && target_.degree <= max_batch_degree;
+  if (!batch) {
+    for (std::size_t k = 0; k < own.donors.size(); ++k) {
+      const RunShape shape = run_shape(run_of(own, k));
+      area_.push_back(shape.area);
+      note_region(t, own.donors[k], shape.area, shape.gap, outcome);
+    }
+    return false;
   }
-  const double distance = coincidence_distance(
-      width, geometry_kernel::largest_coordinate(target_.element_box[static_cast<std::size_t>(t)]));
-  outcome.max_joint_gap = std::max(outcome.max_joint_gap, gap / size);
-  if (area < -std::max(largest_joint_gap * smaller, distance * size)) outcome.inconsistent = true;
-  const double widest = std::max(largest_joint_gap * width, 256.0 * distance);
-  if (gap <= widest) return;
-  for (const Bridge& bridge : bridges_) {
-    double across = joint_width(target_, t, bridge.step);
-    if (d != exterior) across = std::min(across, joint_width(donor_, d, bridge.step));
-    if (across > widest) outcome.inconsistent = true;
+  fill_batch(own.pieces);
+  // The areas have the same bits whatever is summed besides.
+  const bool fits = corners_fit(target_, t);
+  const bool summed = fits && first < groups_.size();
+  const int degree = summed ? 2 * groups_[first].target_space->uniform_degree() : 0;
+  const TargetPlace place =
+      summed ? target_place(groups_[first], t)
+      : fits ? place_of(affine_frame(target_.corners(t)))
+             : TargetPlace{origin_, Vec2{{1, 0}}, Vec2{{0, 1}}, Vec2{{1, 0}}, Vec2{{0, 1}}, 1.0};
+  region_sums(piece_table(target_.degree, degree), degree, place, own.pieces, own.donors.size(),
+              batch_);
+  const auto open = static_cast<std::size_t>(bernstein::triangle_size(degree));
+  for (std::size_t k = 0; k < own.donors.size(); ++k) {
+    const std::int32_t d = own.donors[k];
+    // About a place in the target element, areas are known to its rounding.
+    const bool small =
+        d != exterior && donor_.element_area[static_cast<std::size_t>(d)] <
+                             small_area * target_.element_area[static_cast<std::size_t>(t)];
+    if (small || loose_) {
+      const RunShape shape = run_shape(run_of(own, k));
+      area_.push_back(shape.area);
+      bridged_[k] = bridges_.empty() ? 0 : 1;
+      note_region(t, d, shape.area, shape.gap, outcome);
+      continue;
+    }
+    bridges_.clear();
+    const double* sums = batch_.region(k);
+    area_.push_back(sums[0] * place.area);
+    const double gap = norm(sums[open] * place.along_first + sums[open + 1] * place.along_second);
+    note_region(t, d, area_.back(), gap, outcome);
   }
-  if (bridges_.empty()) outcome.inconsistent = true;
+  return summed;
 }
 
-void ElementTransfer::add_batched(std::size_t i, std::int32_t t, std::span<const Segment> segments,
-                                  std::span<double> mass) {
+void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPieces& own,
+                                  bool summed, std::span<double> mass) {
   const Group& g = groups_[i];
   const auto nc = static_cast<std::size_t>(g.components);
   const int degree = g.target_space->uniform_degree();
   const TargetPlace place = target_place(g, t);
-  piece_moments(piece_table(target_.degree, 2 * degree), 2 * degree, place, batch_);
-  for (BatchRegion& region : regions_) {
-    const std::int32_t d = segments[region.begin].donor;
-    region.far = false;
+  if (!summed) {
+    region_sums(piece_table(target_.degree, 2 * degree), 2 * degree, place, own.pieces,
+                own.donors.size(), batch_);
+  }
+  const auto size = static_cast<std::size_t>(bernstein::triangle_size(degree));
+  const double* some = nullptr;
+  regions_.clear();
+  for (const std::int32_t d : own.donors) {
+    BatchRegion& region = regions_.emplace_back();
     region.donor = nullptr;
-    if (d == exterior || shapes_[static_cast<std::size_t>(&region - regions_.data())].bridged)
-      continue;
+    if (d == exterior) continue;
+    if (some == nullptr) some = g.donor_powers(d);
+    if (bridged_[regions_.size() - 1] != 0) continue;
     region.frame = &g.donor_frame[static_cast<std::size_t>(d)];
     region.donor = g.donor_powers(d);
   }
+  // Constants come back whatever the rounding of the moments when they are not integrated at all.
+  double* base = base_[i].data();
+  for (std::size_t c = 0; c < nc; ++c) base[c] = some != nullptr ? some[c * size] : 0.0;
   Accumulators& sums = moment_sums_[i];
-  add_batch(degree, place, batch_, regions_, g.components, sums.product.data(), sums.basis.data(),
-            mass.data());
+  add_batch(degree, place, batch_, regions_, g.components, base, sums.product.data(),
+            sums.basis.data(), mass.data());
   for (std::size_t k = 0; k < regions_.size(); ++k) {
-    if (!(regions_[k].far || (shapes_[k].bridged && shapes_[k].donor != exterior))) continue;
-    const auto run = segments.subspan(regions_[k].begin, regions_[k].end - regions_[k].begin);
-    add_pair_moments(g, t, run.front().donor, run_shape(run), sums, mass.subspan(k * nc, nc));
+    if (!regions_[k].far && (bridged_[k] == 0 || own.donors[k] == exterior)) continue;
+    add_pair_moments(g, t, own.donors[k], run_shape(run_of(own, k)), base, sums,
+                     mass.subspan(k * nc, nc));
   }
 }
 
-void ElementTransfer::moments_to_powers(const Group& g, std::int32_t t, const Accumulators& moments,
-                                        Accumulators& sums) {
+void ElementTransfer::moments_to_powers(std::size_t i, std::int32_t t) {
+  const Group& g = groups_[i];
+  const Accumulators& moments = moment_sums_[i];
+  Accumulators& sums = sums_[i];
+  const auto nc = static_cast<std::size_t>(g.components);
+  // What is there so far (parts that no donor covers) has the whole polynomials.
+  for (std::size_t n = 0; n < sums.basis.size(); ++n)
+    for (std::size_t c = 0; c < nc; ++c) sums.product[n * nc + c] -= base_[i][c] * sums.basis[n];
   const int degree = g.target_space->degree(ElementId(t));
   powers_from_moments(degree, 1, moments.basis.data(), sums.basis.data());
   powers_from_moments(degree, g.components, moments.product.data(), sums.product.data());
