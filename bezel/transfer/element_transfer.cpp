@@ -335,8 +335,10 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
   // The regions: shape and area do not depend on the fields.
   const bool batch =
       donor_.degree == target_.degree && target_.degree <= max_batch_degree && blocks == nullptr;
-  const auto first_batched = static_cast<std::size_t>(
-      batch ? std::find(batched_.begin(), batched_.end(), 1) - batched_.begin() : groups_.size());
+  const std::size_t first_batched =
+      batch ? static_cast<std::size_t>(std::find(batched_.begin(), batched_.end(), 1) -
+                                       batched_.begin())
+            : groups_.size();
   have_segments_ = false;
   loose_ = own.loose();
   const bool summed = shape_regions(t, own, first_batched, outcome);
