@@ -88,9 +88,12 @@ class ElementTransfer {
     Vec2 centre;    // mean of the corners
     Vec2 relative;  // the same, from origin_
     double area;
-    double gap;  // by how much the pieces fail to close
+    double gap;  // the widest open joint
   };
+  /// Also fills piece_control_ and bridges_.
   RunShape run_shape(std::span<const Segment> run);
+  double bridge_joints();
+  double largest_partition_residual(std::int32_t t) const;
   // By moments (element_moments.cpp).
   static bool by_moments(const Group& g, std::int32_t t, std::int32_t d);
   const PieceTable& piece_table(int degree, int moments);
@@ -179,15 +182,23 @@ class ElementTransfer {
   Vec2 origin_;  // of the pieces' control points, on the target element
   std::vector<Vec2> piece_control_, local_control_;
   std::vector<int> piece_degree_;
+  // Straight pieces across open joints of the region run_shape was asked for last, from origin_.
+  struct Bridge {
+    Vec2 from, step;
+  };
+  std::vector<Bridge> bridges_;
+  std::vector<Vec2> piece_starts_, piece_ends_;
+  bool loose_ = false;  // this element's joints may be open a little
   std::vector<MomentPiece> moment_pieces_;
   std::vector<std::unique_ptr<PieceTable>> tables_;
   std::vector<double> moments_;
   PieceBatch batch_;
   std::vector<BatchRegion> regions_;
-  std::vector<double> area_;          // by region
-  std::vector<double> region_mass_;   // of one group, [region][component]
-  std::vector<Segment> segments_;     // of this element, when have_segments_
-  std::vector<std::size_t> run_end_;  // by region
+  std::vector<double> area_;           // by region
+  std::vector<std::uint8_t> bridged_;  // by region: has bridges
+  std::vector<double> region_mass_;    // of one group, [region][component]
+  std::vector<Segment> segments_;      // of this element, when have_segments_
+  std::vector<std::size_t> run_end_;   // by region
   bool have_segments_ = false;
   std::vector<double> w_, tu_, tv_, du_, dv_;  // quadrature points, the first count_ in use
   std::size_t count_ = 0;
