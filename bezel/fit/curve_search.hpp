@@ -14,25 +14,31 @@ namespace bezel::curve_search {
 
 constexpr std::size_t max_nodes = std::size_t(max_curve_degree) + 1;
 
-/// Nodes on the curve: parameters and what the curve is there.
+/// Nodes on the curve: parameters and what the curve is there, coordinate by coordinate. Entries
+/// behind the last node are padding.
 template <int dim>
 struct Nodes {
+  using Row = std::array<double, std::size_t(small::padded(max_curve_degree + 1)) + small::padding>;
+  using Rows = std::array<Row, std::size_t(dim)>;
   int n = 0;
-  std::array<double, max_nodes> t;
-  std::array<CurveJet<dim>, max_nodes> g;
-  /// x and d1 of g once more, coordinate by coordinate, for sums over the nodes.
-  std::array<std::array<double, max_nodes>, dim> x, d1;
+  Row t;
+  Rows x, d1, d2;
 
   void place(const SmoothCurve<dim>& curve, int i, double parameter) {
     set(i, parameter, curve(parameter));
   }
   void set(int i, double parameter, const CurveJet<dim>& jet) {
     t[std::size_t(i)] = parameter;
-    g[std::size_t(i)] = jet;
     for (std::size_t c = 0; c < dim; ++c) {
       x[c][std::size_t(i)] = jet.x.c[c];
       d1[c][std::size_t(i)] = jet.d1.c[c];
+      d2[c][std::size_t(i)] = jet.d2.c[c];
     }
+  }
+  static Vec<dim> at(const Rows& values, int i) {
+    Vec<dim> v;
+    for (std::size_t c = 0; c < dim; ++c) v.c[c] = values[c][std::size_t(i)];
+    return v;
   }
   bool ordered() const {
     for (int i = 0; i < n; ++i)
@@ -171,7 +177,7 @@ int levenberg_marquardt(const Problem<dim>& problem, Nodes<dim>& nodes, int iter
     while (mu < most_damping && !(gain > 0.0) && done < iterations) {
       ++done;
       small::Vector step;
-      if (squares.solve(mu, step)) {
+      if (squares.solve(mu * squares.largest(), step)) {
         for (int r = 0; r < size; ++r) step[std::size_t(r)] *= unit[std::size_t(r)];
         const Nodes<dim> next = moved(problem, nodes, step, longest_step(nodes, step));
         if (next.ordered()) gain = accept(next);
@@ -212,17 +218,14 @@ struct Score {
   bool valid = false;                  ///< nodes ordered, min_speed >= 1e-3
   double slow_xi = 0.0, far_xi = 0.0;  ///< where |p'| is smallest, and d largest
   static constexpr std::size_t most = std::size_t(4) * max_curve_degree;
-  std::array<Foot<dim>, most> foot;
-  std::array<double, most> speed;  ///< |p'|
+  using Row = std::array<double, most>;
+  Row s, speed;                     ///< parameter of the foot of each point; |p'|
+  std::array<Row, dim> e, tangent;  ///< of Foot, coordinate by coordinate
 };
 /// @param guess  feet to start from; null: between the nodes
 template <int dim>
 Score<dim> measure(const Problem<dim>& problem, const Nodes<dim>& nodes,
                    const Score<dim>* guess = nullptr);
-
-/// About the same d2 from one point in four: a check.
-template <int dim>
-double rough_distance(const Problem<dim>& problem, const Nodes<dim>& nodes);
 
 /// Levenberg-Marquardt on the mean square distance; `nodes` and `score` become the best.
 ///
