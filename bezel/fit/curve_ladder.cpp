@@ -12,6 +12,12 @@ constexpr double nearly_floor = 3e-14;
 // A degree whose distance falls by this factor needs no closer look; the last degree, by the
 // second.
 constexpr double enough = 0.3, enough_at_last = 0.15;
+// A distance that falls by this factor with each degree, below this fraction of the length, is that
+// of a curve that is resolved: its good nodes follow from those of the degree before.
+constexpr double steady = 0.2, resolved = 1e-3;
+constexpr int last_polish = 40;  // steps of least distance from the nodes of the last degree
+// Points this fraction of the length away from the curve are on it.
+constexpr double rounding = 1e-15;
 // Below this fraction of the length, degrees that bring no gain are left out.
 constexpr double nearly_exact = 1e-12;
 
@@ -266,30 +272,63 @@ void offer_simple(const Problem<dim>& problem, Level<dim>& level, int n) {
 }  // namespace
 
 template <int dim>
-bool quick_climb(const Problem<dim>& problem, int degree, Found<dim>& found, Effort& effort) {
+Quick<dim> quick_climb(const Problem<dim>& problem, int degree, Effort& effort) {
+  Quick<dim> quick;
   Nodes<dim> lower = problem.chord();
   double largest = HUGE_VAL;
-  for (int n = 2; n <= degree; ++n) {
+  // By two degrees at a time: the interpolant of a resolved curve is a good start that far.
+  for (int n = 2; n <= degree; n = n == degree ? n + 1 : std::min(n + 2, degree)) {
     Nodes<dim> next;
     next.n = n;
-    largest = project(problem, lower, problem.tables.rung(n).from_last.data(), false, next);
-    if (largest <= 1e-15 * problem.length && lower.n > 1) {
+    const CurveRung& rung = problem.tables.rung(n);
+    const std::vector<double>& rows = lower.n == n - 1 ? rung.from_last : rung.from_second;
+    largest = project(problem, lower, rows.data(), false, next);
+    if (largest <= rounding * problem.length && lower.n > 1) {
       lower = lift(problem, lower, degree);
       break;
     }
-    const NewtonResult r = solve_tangents(problem, next, false);
+    // On the way an error that is small beside the next interpolant's distance does not matter.
+    constexpr double root = 1e-12, loosest = 1e-2;
+    const double loose = std::min(std::pow(largest / problem.length, 1.5), loosest);
+    const NewtonResult r =
+        solve_tangents(problem, next, false, n < degree ? std::max(loose, root) : root);
     effort.newton += r.iterations;
-    if (!r.converged) return false;
+    if (!r.converged) return quick;
+    quick.before = quick.last;
+    quick.last = lower;
     lower = next;
   }
-  found = {lower, measure(problem, lower), CurveKind::equal_tangent};
-  return found.score.valid && found.score.d2 <= std::max(0.5 * largest * std::sqrt(problem.length),
-                                                         floor_of_length * problem.length);
+  const Score<dim> score = measure(problem, lower);
+  quick.found = {lower, score, CurveKind::equal_tangent};
+  quick.good = score.valid && score.d2 <= std::max(0.5 * largest * std::sqrt(problem.length),
+                                                   floor_of_length * problem.length);
+  return quick;
 }
 
 template <int dim>
-void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>& root,
-           Effort& effort) {
+bool converges(const Problem<dim>& problem, const Quick<dim>& quick) {
+  if (!quick.good) return false;
+  if (within(problem, quick.found.score, floor_of_length)) return true;
+  if (!within(problem, quick.found.score, resolved) || quick.before.n < 1) return false;
+  const Score<dim> last = measure(problem, quick.last), before = measure(problem, quick.before);
+  const auto rate = [](double d, int n, double d_lower, int n_lower) {
+    return std::pow(d / d_lower, 1.0 / (n - n_lower));
+  };
+  return rate(quick.found.score.d2, quick.found.nodes.n, last.d2, quick.last.n) < steady &&
+         rate(last.d2, quick.last.n, before.d2, quick.before.n) < steady;
+}
+
+template <int dim>
+void polish(const Problem<dim>& problem, Found<dim>& found, Effort& effort) {
+  if (within(problem, found.score, floor_of_length)) return;
+  const double before = found.score.d2;
+  effort.distance += minimise_distance(problem, found.nodes, found.score, last_polish);
+  if (found.score.d2 < before) found.kind = CurveKind::orthogonal_distance;
+}
+
+template <int dim>
+void climb(const Problem<dim>& problem, int degree, const Quick<dim>& quick, Found<dim>& best,
+           Found<dim>& root, Effort& effort) {
   // Two chains: the best nodes of each degree, and the best without crowded starts. The first alone
   // loses its way: on curves of low regularity better nodes of one degree lead to worse ones of
   // the next.
@@ -315,6 +354,7 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
       return;
     }
     Level<dim> level(problem, n, effort);
+    if (final && quick.good) level.offer(quick.found.nodes, true);
     const double factor = final ? enough_at_last : enough;
     const Nodes<dim> start = raised(problem, plain.nodes, n);
     level.offer(start, false);
@@ -347,7 +387,7 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
     }
     if (final && !level.at_floor()) offer_simple(problem, level, n);
     const bool gained = level.done(last, enough);
-    if (final || !gained) level.polish(level.best, final ? 40 : 8);
+    if (final || !gained) level.polish(level.best, final ? last_polish : 8);
     before = plain;
     plain = level.plain;
     last = level.best;
@@ -363,9 +403,13 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
   }
 }
 
-template bool quick_climb(const Problem<2>&, int, Found<2>&, Effort&);
-template bool quick_climb(const Problem<3>&, int, Found<3>&, Effort&);
-template void climb(const Problem<2>&, int, Found<2>&, Found<2>&, Effort&);
-template void climb(const Problem<3>&, int, Found<3>&, Found<3>&, Effort&);
+template Quick<2> quick_climb(const Problem<2>&, int, Effort&);
+template Quick<3> quick_climb(const Problem<3>&, int, Effort&);
+template bool converges(const Problem<2>&, const Quick<2>&);
+template bool converges(const Problem<3>&, const Quick<3>&);
+template void polish(const Problem<2>&, Found<2>&, Effort&);
+template void polish(const Problem<3>&, Found<3>&, Effort&);
+template void climb(const Problem<2>&, int, const Quick<2>&, Found<2>&, Found<2>&, Effort&);
+template void climb(const Problem<3>&, int, const Quick<3>&, Found<3>&, Found<3>&, Effort&);
 
 }  // namespace bezel::curve_search
