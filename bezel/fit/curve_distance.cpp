@@ -37,6 +37,7 @@ Score<dim> measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const S
     small::combine(nodes.n + 1, rung.m, rung.slope_columns.data(), x, slope[c].data());
   }
   Score<dim> score;
+  score.points = rung.m;
   if (guess)
     std::copy(guess->s.begin(), guess->s.begin() + rung.m, score.s.begin());
   else

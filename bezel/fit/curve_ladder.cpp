@@ -274,24 +274,23 @@ void offer_simple(const Problem<dim>& problem, Level<dim>& level, int n) {
 template <int dim>
 Quick<dim> quick_climb(const Problem<dim>& problem, int degree, Effort& effort) {
   Quick<dim> quick;
+  // No degree is left out: there are many roots, and from the degree before the last Newton's
+  // method mostly finds a worse one.
   Nodes<dim> lower = problem.chord();
   double largest = HUGE_VAL;
-  // By two degrees at a time: the interpolant of a resolved curve is a good start that far.
-  for (int n = 2; n <= degree; n = n == degree ? n + 1 : std::min(n + 2, degree)) {
+  for (int n = 2; n <= degree; ++n) {
     Nodes<dim> next;
     next.n = n;
-    const CurveRung& rung = problem.tables.rung(n);
-    const std::vector<double>& rows = lower.n == n - 1 ? rung.from_last : rung.from_second;
-    largest = project(problem, lower, rows.data(), false, next);
-    if (largest <= rounding * problem.length && lower.n > 1) {
+    largest = project(problem, lower, problem.tables.rung(n).from_last.data(), false, next);
+    const double part = largest / problem.length;
+    if (part <= rounding && lower.n > 1) {
       lower = lift(problem, lower, degree);
       break;
     }
     // On the way an error that is small beside the next interpolant's distance does not matter.
     constexpr double root = 1e-12, loosest = 1e-2;
-    const double loose = std::min(std::pow(largest / problem.length, 1.5), loosest);
-    const NewtonResult r =
-        solve_tangents(problem, next, false, n < degree ? std::max(loose, root) : root);
+    const double converged = n < degree ? std::clamp(part * part, root, loosest) : root;
+    const NewtonResult r = solve_tangents(problem, next, false, converged);
     effort.newton += r.iterations;
     if (!r.converged) return quick;
     quick.before = quick.last;

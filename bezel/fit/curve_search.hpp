@@ -14,8 +14,15 @@ namespace bezel::curve_search {
 
 constexpr std::size_t max_nodes = std::size_t(max_curve_degree) + 1;
 
+/// to[0 .. padded(n)) = from.
+template <std::size_t capacity>
+void copy_padded(int n, const std::array<double, capacity>& from,
+                 std::array<double, capacity>& to) {
+  std::copy(from.data(), from.data() + small::padded(n), to.data());
+}
+
 /// Nodes on the curve: parameters and what the curve is there, coordinate by coordinate. Entries
-/// behind the last node are padding.
+/// behind the last node are padding; copies are of what is used, since there are many.
 template <int dim>
 struct Nodes {
   using Row = std::array<double, std::size_t(small::padded(max_curve_degree + 1)) + small::padding>;
@@ -23,6 +30,19 @@ struct Nodes {
   int n = 0;
   Row t;
   Rows x, d1, d2;
+
+  Nodes() = default;
+  Nodes(const Nodes& other) { *this = other; }
+  Nodes& operator=(const Nodes& other) {
+    n = other.n;
+    copy_padded(n + 1, other.t, t);
+    for (std::size_t c = 0; c < dim; ++c) {
+      copy_padded(n + 1, other.x[c], x[c]);
+      copy_padded(n + 1, other.d1[c], d1[c]);
+      copy_padded(n + 1, other.d2[c], d2[c]);
+    }
+    return *this;
+  }
 
   void place(const SmoothCurve<dim>& curve, int i, double parameter) {
     set(i, parameter, curve(parameter));
@@ -137,16 +157,16 @@ double longest_step(const Nodes<dim>& nodes, const small::Vector& dt) {
   }
   return lambda;
 }
-/// nodes + lambda dt, evaluated. dt[i - 1] belongs to node i.
+/// to = from + lambda dt, evaluated; both may be the same. dt[i - 1] belongs to node i.
 template <int dim>
-Nodes<dim> moved(const Problem<dim>& problem, const Nodes<dim>& nodes, const small::Vector& dt,
-                 double lambda) {
-  Nodes<dim> next;
-  next.n = nodes.n;
-  problem.set_ends(next);
-  for (int i = 1; i < nodes.n; ++i)
-    next.place(problem.curve, i, nodes.t[std::size_t(i)] + lambda * dt[std::size_t(i) - 1]);
-  return next;
+void move(const Problem<dim>& problem, const Nodes<dim>& from, const small::Vector& dt,
+          double lambda, Nodes<dim>& to) {
+  if (&to != &from) {
+    to.n = from.n;
+    problem.set_ends(to);
+  }
+  for (int i = 1; i < from.n; ++i)
+    to.place(problem.curve, i, from.t[std::size_t(i)] + lambda * dt[std::size_t(i) - 1]);
 }
 
 /// Levenberg-Marquardt in the inner nodes; the unknown of node i is dt_i / unit_i, unit_i the
@@ -165,6 +185,7 @@ int levenberg_marquardt(const Problem<dim>& problem, Nodes<dim>& nodes, int iter
   int done = 0, small_gains = 0;
   small::LeastSquares squares;
   small::Vector unit;
+  Nodes<dim> next;
   while (done < iterations && size > 0) {
     for (int r = 0; r < size; ++r) {
       const double* t = nodes.t.data() + r;
@@ -179,7 +200,7 @@ int levenberg_marquardt(const Problem<dim>& problem, Nodes<dim>& nodes, int iter
       small::Vector step;
       if (squares.solve(mu * squares.largest(), step)) {
         for (int r = 0; r < size; ++r) step[std::size_t(r)] *= unit[std::size_t(r)];
-        const Nodes<dim> next = moved(problem, nodes, step, longest_step(nodes, step));
+        move(problem, nodes, step, longest_step(nodes, step), next);
         if (next.ordered()) gain = accept(next);
         if (gain > 0.0) nodes = next;
       }
@@ -217,10 +238,28 @@ struct Score {
   double min_speed = 0.0;              ///< smallest |p'| / (L / 2)
   bool valid = false;                  ///< nodes ordered, min_speed >= 1e-3
   double slow_xi = 0.0, far_xi = 0.0;  ///< where |p'| is smallest, and d largest
-  static constexpr std::size_t most = std::size_t(4) * max_curve_degree;
-  using Row = std::array<double, most>;
+  using Row = std::array<double, std::size_t(4) * max_curve_degree>;
+  int points = 0;                   ///< entries of the rows below
   Row s, speed;                     ///< parameter of the foot of each point; |p'|
   std::array<Row, dim> e, tangent;  ///< of Foot, coordinate by coordinate
+
+  Score() = default;
+  Score(const Score& other) { *this = other; }
+  Score& operator=(const Score& other) {
+    d2 = other.d2;
+    min_speed = other.min_speed;
+    valid = other.valid;
+    slow_xi = other.slow_xi;
+    far_xi = other.far_xi;
+    points = other.points;
+    copy_padded(points, other.s, s);
+    copy_padded(points, other.speed, speed);
+    for (std::size_t c = 0; c < dim; ++c) {
+      copy_padded(points, other.e[c], e[c]);
+      copy_padded(points, other.tangent[c], tangent[c]);
+    }
+    return *this;
+  }
 };
 /// @param guess  feet to start from; null: between the nodes
 template <int dim>

@@ -113,43 +113,50 @@ NewtonResult solve_tangents(const Problem<2>& problem, Nodes<2>& nodes, bool pat
   const int size = nodes.n - 1;
   Matrix jacobian;
   Vector step;
-  Nodes<2> now = nodes;
   NewtonResult result{HUGE_VAL, false, 0};
   double last = HUGE_VAL;
   int without_gain = 0;
-  // Plain Newton, steps limited by the gaps only.
+  // Plain Newton, steps limited by the gaps only. The best iterate and the last one, if that is
+  // another, in two places, so that nothing is copied.
+  Nodes<2> second;
+  Nodes<2>*best = nullptr, *now = &nodes;
   for (int i = 0;; ++i) {
-    const Equations equations(problem, rung, now);
+    const Equations equations(problem, rung, *now);
     const double residual = equations.residual;
-    if (residual < result.residual) {
+    if (residual < result.residual || !best) {
       result.residual = residual;
-      nodes = now;
+      best = now;
       without_gain = 0;
     } else if (++without_gain > 8) {
       break;
     }
     if (residual <= converged || (residual <= noise && residual > last / 3.0)) {
       result.converged = true;
-      return result;
+      break;
     }
     if (i == plain_steps) break;
     last = residual;
-    equations.linearise(problem, rung, now, jacobian);
+    equations.linearise(problem, rung, *now, jacobian);
     if (!small::solve(size, jacobian, step)) break;
     ++result.iterations;
-    now = moved(problem, now, step, longest_step(now, step));
-    if (!now.ordered()) break;
+    const double lambda = longest_step(*now, step);
+    Nodes<2>* next = best == &nodes ? &second : &nodes;
+    move(problem, *now, step, lambda, *next);
+    now = next;
+    if (!now->ordered()) break;
   }
+  if (best == &second) nodes = second;
+  if (result.converged) return result;
   result.converged = result.residual <= noise;
   if (result.converged || !patient) return result;
 
   // From the best iterate, with a line search; when that stalls, damped least squares.
-  now = nodes;
-  Equations equations(problem, rung, now);
+  Nodes<2> at = nodes, trial;
+  Equations equations(problem, rung, at);
   bool damped = false;
   for (int i = 0; i < search_steps + damped_steps; ++i) {
     if (equations.residual <= converged) break;
-    equations.linearise(problem, rung, now, jacobian);
+    equations.linearise(problem, rung, at, jacobian);
     const double cost = sum_of_squares(size, equations.f);
     if (damped) {
       small::LeastSquares squares;
@@ -162,18 +169,18 @@ NewtonResult solve_tangents(const Problem<2>& problem, Nodes<2>& nodes, bool pat
       continue;
     }
     ++result.iterations;
-    double lambda = longest_step(now, step);
+    double lambda = longest_step(at, step);
     bool moving = false;
     for (int halving = 0; halving < 10 && !moving; ++halving, lambda *= 0.5) {
-      const Nodes<2> next = moved(problem, now, step, lambda);
-      const Equations trial(problem, rung, next);
-      if (next.ordered() && sum_of_squares(size, trial.f) < (1.0 - 1e-4 * lambda) * cost) {
+      move(problem, at, step, lambda, trial);
+      const Equations there(problem, rung, trial);
+      if (trial.ordered() && sum_of_squares(size, there.f) < (1.0 - 1e-4 * lambda) * cost) {
         moving = true;
-        now = next;
-        equations = trial;
-        if (trial.residual < result.residual) {
-          result.residual = trial.residual;
-          nodes = next;
+        at = trial;
+        equations = there;
+        if (there.residual < result.residual) {
+          result.residual = there.residual;
+          nodes = at;
         }
       }
     }

@@ -120,17 +120,6 @@ void combine(int n, int stride, const double* table, const double* x, double* ou
   }
 }
 
-void scaled_sum(int n, const double* weight, double a, const double* x, double b, const double* y,
-                double* out) {
-  const D d;
-  const int lanes = int(hn::Lanes(d));
-  const auto va = hn::Set(d, a), vb = hn::Set(d, b);
-  for (int k = 0; k < n; k += lanes) {
-    const auto sum = hn::Add(hn::Mul(va, hn::LoadU(d, x + k)), hn::Mul(vb, hn::LoadU(d, y + k)));
-    hn::StoreU(hn::Mul(hn::LoadU(d, weight + k), sum), d, out + k);
-  }
-}
-
 }  // namespace bezel::small::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -140,7 +129,6 @@ namespace bezel::small {
 HWY_EXPORT(triangularise);
 HWY_EXPORT(eliminate);
 HWY_EXPORT(combine);
-HWY_EXPORT(scaled_sum);
 
 void triangularise(int n, const Profile& profile, int stride, double* a, double* work) {
   HWY_DYNAMIC_DISPATCH(triangularise)(n, profile, stride, a, work);
@@ -150,10 +138,6 @@ bool eliminate(int n, int stride, double* a) {
 }
 void combine(int n, int stride, const double* table, const double* x, double* out) {
   HWY_DYNAMIC_DISPATCH(combine)(n, stride, table, x, out);
-}
-void scaled_sum(int n, const double* weight, double a, const double* x, double b, const double* y,
-                double* out) {
-  HWY_DYNAMIC_DISPATCH(scaled_sum)(n, weight, a, x, b, y, out);
 }
 
 }  // namespace bezel::small

@@ -33,8 +33,12 @@ bool eliminate(int n, int stride, double* a);
 /// out[a] = sum_k table[k stride + a] x[k], k < n, for a < stride (padded).
 void combine(int n, int stride, const double* table, const double* x, double* out);
 
-/// out[k] = d[k] (a x[k] + b y[k]) for k < n, rounded up to a multiple of the padding.
-void scaled_sum(int n, const double* d, double a, const double* x, double b, const double* y,
-                double* out);
+/// out[k] = d[k] (a x[k] + b y[k]) for k < padded(n). Too short a loop for a call.
+inline void scaled_sum(int n, const double* d, double a, const double* x, double b, const double* y,
+                       double* out) {
+  for (int k = 0; k < n; k += padding)
+    for (int lane = k; lane < k + padding; ++lane)
+      out[lane] = d[lane] * (a * x[lane] + b * y[lane]);
+}
 
 }  // namespace bezel::small
