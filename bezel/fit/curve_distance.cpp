@@ -24,6 +24,16 @@ void guess_feet(const CurveRung& rung, const Nodes<dim>& nodes, double* s) {
   }
 }
 
+// Whether all nodes are within a small part of the gaps beside them.
+template <int dim>
+bool close(const Nodes<dim>& a, const Nodes<dim>& b) {
+  for (std::size_t i = 1; i < std::size_t(a.n); ++i) {
+    const double gap = std::min(a.t[i] - a.t[i - 1], a.t[i + 1] - a.t[i]);
+    if (std::fabs(a.t[i] - b.t[i]) > 0.01 * gap) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 template <int dim>
@@ -83,7 +93,7 @@ Score<dim> measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const S
 
 template <int dim>
 int minimise_distance(const Problem<dim>& problem, Nodes<dim>& nodes, Score<dim>& score,
-                      int iterations) {
+                      const DistanceSteps<dim>& steps) {
   const CurveRung& rung = problem.tables.rung(nodes.n);
   const int size = nodes.n - 1;
   // |p'| is frozen in each step, and the derivative of a distance is exact: the foot moves along
@@ -128,12 +138,26 @@ int minimise_distance(const Problem<dim>& problem, Nodes<dim>& nodes, Score<dim>
     score = trial;
     return gain;
   };
-  return levenberg_marquardt(problem, nodes, iterations, 1e-3, build, accept);
+  double before = score.d2;
+  int done_before = 0;
+  const auto pointless = [&](const Nodes<dim>& now, int done) {
+    if (!steps.rival || !score.valid) return false;
+    if (score.d2 < 1.5 * steps.rival_d2 && close(now, *steps.rival)) return true;
+    constexpr int some = 4;
+    if (done < done_before + some) return false;
+    // What the steps left bring if they bring as much as the last ones.
+    const double rate = std::pow(score.d2 / before, 1.0 / (done - done_before));
+    before = score.d2;
+    done_before = done;
+    return score.d2 * std::pow(rate, 2.0 * (steps.most - done)) > steps.rival_d2;
+  };
+  return levenberg_marquardt(problem, nodes, steps.most, steps.least_gain, build, accept,
+                             pointless);
 }
 
 template Score<2> measure(const Problem<2>&, const Nodes<2>&, const Score<2>*);
 template Score<3> measure(const Problem<3>&, const Nodes<3>&, const Score<3>*);
-template int minimise_distance(const Problem<2>&, Nodes<2>&, Score<2>&, int);
-template int minimise_distance(const Problem<3>&, Nodes<3>&, Score<3>&, int);
+template int minimise_distance(const Problem<2>&, Nodes<2>&, Score<2>&, const DistanceSteps<2>&);
+template int minimise_distance(const Problem<3>&, Nodes<3>&, Score<3>&, const DistanceSteps<3>&);
 
 }  // namespace bezel::curve_search

@@ -55,7 +55,8 @@ CurveNodes searched(const Problem<dim>& problem, int degree, CurveMethod method,
       }
       break;
     case CurveMethod::orthogonal_distance:
-      effort.distance += minimise_distance(problem, best.nodes, best.score, distance_iterations);
+      effort.distance +=
+          minimise_distance(problem, best.nodes, best.score, {.most = distance_iterations});
       best.kind = CurveKind::orthogonal_distance;
       break;
     case CurveMethod::l2:

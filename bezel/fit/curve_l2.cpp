@@ -128,7 +128,8 @@ int GraphError<dim>::minimise(Nodes<dim>& nodes, int iterations) const {
     value = std::move(trial);
     return gain;
   };
-  return levenberg_marquardt(problem_, nodes, iterations, 1e-4, build, accept);
+  return levenberg_marquardt(problem_, nodes, iterations, 1e-4, build, accept,
+                             [](const Nodes<dim>&, int) { return false; });
 }
 
 template class GraphError<2>;

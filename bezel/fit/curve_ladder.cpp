@@ -15,7 +15,9 @@ constexpr double enough = 0.3, enough_at_last = 0.15;
 // A distance that falls by this factor with each degree, below this fraction of the length, is that
 // of a curve that is resolved: its good nodes follow from those of the degree before.
 constexpr double steady = 0.2, resolved = 1e-3;
-constexpr int last_polish = 40;  // steps of least distance from the nodes of the last degree
+// From the nodes of the last degree: least distance falls slowly in flat valleys.
+constexpr int last_polish = 160;
+constexpr double last_gain = 1e-4;
 // Points this fraction of the length away from the curve are on it.
 constexpr double rounding = 1e-15;
 // Below this fraction of the length, degrees that bring no gain are left out.
@@ -145,6 +147,13 @@ Nodes<dim> curvature_nodes(const Problem<dim>& problem, int degree) {
 template <int dim>
 class Level {
  public:
+  // Steps towards least distance, as long as they may become the best.
+  void minimise(Nodes<dim>& nodes, Score<dim>& score, int iterations) {
+    const bool rival = best.nodes.n == degree_ && best.score.valid;
+    effort_.distance += minimise_distance(
+        problem_, nodes, score,
+        {.most = iterations, .rival = rival ? &best.nodes : nullptr, .rival_d2 = best.score.d2});
+  }
   Level(const Problem<dim>& problem, int degree, Effort& effort)
       : problem_(problem), degree_(degree), effort_(effort) {}
   Found<dim> best, root;
@@ -165,7 +174,7 @@ class Level {
   // Least distance from a start, then Newton from there.
   void descend(Nodes<dim> nodes) {
     Score<dim> score = measure(problem_, nodes);
-    effort_.distance += minimise_distance(problem_, nodes, score, 15);
+    minimise(nodes, score, 15);
     keep(nodes, score, false);
     if (score.valid) newton(nodes, false);
   }
@@ -174,10 +183,7 @@ class Level {
   void explore(Nodes<dim> nodes, int rounds) {
     Score<dim> score = measure(problem_, nodes);
     for (int round = 0; round < rounds; ++round) {
-      effort_.distance += minimise_distance(problem_, nodes, score,
-                                            round == 0   ? 8
-                                            : round == 1 ? 15
-                                                         : 40);
+      minimise(nodes, score, round == 0 ? 8 : round == 1 ? 15 : 40);
       keep(nodes, score, false);
       if (!score.valid) return;
       Nodes<dim> aside = nodes;
@@ -186,16 +192,16 @@ class Level {
       if (!aside.ordered()) continue;
       Score<dim> found = offer(aside, r.converged);
       if (!found.valid) continue;
-      effort_.distance += minimise_distance(problem_, aside, found, 8);
+      minimise(aside, found, 8);
       keep(aside, found, false);
     }
   }
   // A few steps of least distance from nodes found.
-  void polish(const Found<dim>& from, int iterations) {
+  void polish(const Found<dim>& from, const DistanceSteps<dim>& steps) {
     if (!from.score.valid || at_floor()) return;
     Nodes<dim> nodes = from.nodes;
     Score<dim> score = from.score;
-    effort_.distance += minimise_distance(problem_, nodes, score, iterations);
+    effort_.distance += minimise_distance(problem_, nodes, score, steps);
     keep(nodes, score, false);
   }
   bool done(const Found<dim>& last, double factor) const {
@@ -248,14 +254,10 @@ void search_plain(const Problem<dim>& problem, Level<dim>& level, const Nodes<di
   level.newton(arc, false);
   level.descend(arc);
   if (before.nodes.n > 0 && !level.done(last, factor)) {
-    const Nodes<dim> other = raised(problem, before.nodes, n);
-    level.newton(other, true);
-    level.descend(other);
+    level.newton(raised(problem, before.nodes, n), false);
   }
   if (!level.done(last, factor)) {
-    const Nodes<dim> curved = curvature_nodes(problem, n);
-    level.newton(curved, false);
-    level.descend(curved);
+    level.descend(curvature_nodes(problem, n));
   }
 }
 
@@ -321,7 +323,8 @@ template <int dim>
 void polish(const Problem<dim>& problem, Found<dim>& found, Effort& effort) {
   if (within(problem, found.score, floor_of_length)) return;
   const double before = found.score.d2;
-  effort.distance += minimise_distance(problem, found.nodes, found.score, last_polish);
+  effort.distance += minimise_distance(problem, found.nodes, found.score,
+                                       {.most = last_polish, .least_gain = last_gain});
   if (found.score.d2 < before) found.kind = CurveKind::orthogonal_distance;
 }
 
@@ -346,7 +349,7 @@ void climb(const Problem<dim>& problem, int degree, const Quick<dim>& quick, Fou
       top.offer(start, true);
       if (even) {
         top.newton(start, true);
-        top.polish(top.best, 8);
+        top.polish(top.best, {.most = 8});
       }
       best = top.best;
       root = top.root;
@@ -357,27 +360,28 @@ void climb(const Problem<dim>& problem, int degree, const Quick<dim>& quick, Fou
     const double factor = final ? enough_at_last : enough;
     const Nodes<dim> start = raised(problem, plain.nodes, n);
     level.offer(start, false);
-    level.newton(start, true);
+    level.newton(start, false);
     if (!level.done(plain, factor)) search_plain(problem, level, start, before, plain, factor);
-    level.polish(level.plain, 8);
+    level.polish(level.plain, {.most = 8});
     level.plain_over = true;
     if (plain.score.d2 != last.score.d2) {
       const Nodes<dim> other = raised(problem, last.nodes, n);
       level.newton(other, false);
       if (!level.done(last, factor)) level.descend(other);
     }
-    for (const double density : {0.5, 0.25}) {
-      if (level.done(last, factor) || !level.best.score.valid) break;
+    if (!level.done(last, factor) && level.best.score.valid) {
       const Found<dim> from = level.best;
-      level.descend(crowded(problem, from.nodes, from.score.slow_xi, density));
-      level.descend(crowded(problem, from.nodes, from.score.far_xi, density));
+      level.descend(crowded(problem, from.nodes, from.score.slow_xi, 0.5));
+      level.descend(crowded(problem, from.nodes, from.score.far_xi, 0.5));
     }
+    // Least distance ended somewhere in a valley: a root may be near that its start did not see.
+    if (!level.done(last, factor) && level.best.score.valid) level.newton(level.best.nodes, true);
     // Where degrees bring no more gain and are left out, the last one before is searched instead.
     const bool jumped = last.nodes.n < n - 1;
     const bool nearly =
         level.best.score.valid && level.best.score.d2 < nearly_exact * problem.length;
     if ((final || nearly) && !jumped) {
-      for (const double density : {0.8, 0.9, 0.7, 0.6}) {
+      for (const double density : {0.8, 0.9}) {
         if (level.done(last, factor) || !level.best.score.valid) break;
         const Found<dim> from = level.best;
         level.explore(crowded(problem, from.nodes, from.score.slow_xi, density), nearly ? 4 : 2);
@@ -386,7 +390,10 @@ void climb(const Problem<dim>& problem, int degree, const Quick<dim>& quick, Fou
     }
     if (final && !level.at_floor()) offer_simple(problem, level, n);
     const bool gained = level.done(last, enough);
-    if (final || !gained) level.polish(level.best, final ? last_polish : 8);
+    if (final)
+      level.polish(level.best, {.most = last_polish, .least_gain = last_gain});
+    else if (!gained)
+      level.polish(level.best, {.most = 8});
     before = plain;
     plain = level.plain;
     last = level.best;

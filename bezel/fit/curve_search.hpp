@@ -175,10 +175,12 @@ void move(const Problem<dim>& problem, const Nodes<dim>& from, const small::Vect
 /// @param build  (squares, unit): adds the rows unit_k dr / dt_k, with right-hand side -r, at the
 ///               nodes accepted last
 /// @param accept (next) -> relative gain in cost, when that is positive `next` becomes the state
+/// @param pointless (nodes, done) -> stop here; asked after each step accepted
 /// @return  steps tried. Stops when two gains in a row are below `least_gain` at little damping
-template <int dim, class Build, class Accept>
+template <int dim, class Build, class Accept, class Pointless>
 int levenberg_marquardt(const Problem<dim>& problem, Nodes<dim>& nodes, int iterations,
-                        double least_gain, const Build& build, const Accept& accept) {
+                        double least_gain, const Build& build, const Accept& accept,
+                        const Pointless& pointless) {
   const int size = nodes.n - 1;
   constexpr double least_damping = 1e-30, little_damping = 1e-12, most_damping = 1e4;
   double mu = 1e-6;
@@ -206,7 +208,7 @@ int levenberg_marquardt(const Problem<dim>& problem, Nodes<dim>& nodes, int iter
       }
       mu = gain > 0.0 ? std::max(0.02 * mu, least_damping) : 20.0 * mu;
     }
-    if (!(gain > 0.0)) break;
+    if (!(gain > 0.0) || pointless(nodes, done)) break;
     small_gains = gain >= least_gain || mu > little_damping ? 0 : small_gains + 1;
     if (small_gains == 2) break;
   }
@@ -266,11 +268,19 @@ template <int dim>
 Score<dim> measure(const Problem<dim>& problem, const Nodes<dim>& nodes,
                    const Score<dim>* guess = nullptr);
 
+/// When least distance ends.
+template <int dim>
+struct DistanceSteps {
+  int most;                           ///< steps
+  double least_gain = 1e-3;           ///< relative, per step
+  const Nodes<dim>* rival = nullptr;  ///< others found before: steps end when they run into these,
+  double rival_d2 = 0.0;              ///< or fall too slowly to get below their distance
+};
 /// Levenberg-Marquardt on the mean square distance; `nodes` and `score` become the best.
 ///
 /// @return  iterations done
 template <int dim>
 int minimise_distance(const Problem<dim>& problem, Nodes<dim>& nodes, Score<dim>& score,
-                      int iterations);
+                      const DistanceSteps<dim>& steps);
 
 }  // namespace bezel::curve_search

@@ -239,7 +239,8 @@ NewtonResult solve_tangents(const Problem<3>& problem, Nodes<3>& nodes, bool pat
     return gain;
   };
   NewtonResult result{HUGE_VAL, false, 0};
-  result.iterations = levenberg_marquardt(problem, nodes, patient ? 60 : 15, 1e-8, build, accept);
+  result.iterations = levenberg_marquardt(problem, nodes, patient ? 60 : 15, 1e-8, build, accept,
+                                          [](const Nodes<3>&, int) { return false; });
   result.residual = tangent_residual(problem, nodes);
   result.converged = std::isfinite(cost);
   return result;
