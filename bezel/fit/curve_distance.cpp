@@ -52,7 +52,7 @@ Score<dim> measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const S
     std::copy(guess->s.begin(), guess->s.begin() + rung.m, score.s.begin());
   else
     guess_feet(rung, nodes, score.s.data());
-  double sum = 0.0, furthest = -1.0;
+  double sum = 0.0, length = 0.0, furthest = -1.0;
   std::size_t slowest = 0;
   for (std::size_t a = 0; a < std::size_t(rung.m); ++a) {
     Vec<dim> q;
@@ -70,6 +70,7 @@ Score<dim> measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const S
     }
     const double distance_squared = dot(f.e, f.e);
     sum += rung.weight[a] * speed * distance_squared;
+    length += rung.weight[a] * speed;
     score.speed[a] = speed;
     if (speed < score.speed[slowest]) slowest = a;
     if (distance_squared > furthest) {
@@ -87,7 +88,11 @@ Score<dim> measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const S
   score.slow_xi = -std::cos(vertex * std::numbers::pi / rung.m);
   score.d2 = std::isfinite(sum) ? std::sqrt(sum) : HUGE_VAL;
   score.min_speed = score.speed[slowest] / (0.5 * problem.length);
-  score.valid = nodes.ordered() && score.min_speed >= 1e-3 && std::isfinite(sum);
+  // An interpolant shrunk to where a closed curve starts would be nearest to it.
+  constexpr double least_speed = 1e-3, least_length = 0.25;
+  score.length = length / problem.length;
+  score.valid = nodes.ordered() && score.min_speed >= least_speed && score.length >= least_length &&
+                std::isfinite(sum);
   return score;
 }
 

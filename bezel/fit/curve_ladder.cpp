@@ -224,6 +224,7 @@ class Level {
   bool better(const Score<dim>& score, const Found<dim>& than) const {
     if (than.nodes.n != degree_) return true;  // nothing yet
     if (score.valid != than.score.valid) return score.valid;
+    if (!score.valid) return std::fabs(1.0 - score.length) < std::fabs(1.0 - than.score.length);
     return score.d2 < than.score.d2;
   }
   const Problem<dim>& problem_;
@@ -270,7 +271,6 @@ void offer_simple(const Problem<dim>& problem, Level<dim>& level, int n) {
     if (projected_nodes(problem, n, method, nodes) == CurveStatus::ok) level.offer(nodes, false);
   }
 }
-
 }  // namespace
 
 template <int dim>
@@ -321,11 +321,13 @@ bool converges(const Problem<dim>& problem, const Quick<dim>& quick) {
 
 template <int dim>
 void polish(const Problem<dim>& problem, Found<dim>& found, Effort& effort) {
-  if (within(problem, found.score, floor_of_length)) return;
-  const double before = found.score.d2;
-  effort.distance += minimise_distance(problem, found.nodes, found.score,
-                                       {.most = last_polish, .least_gain = last_gain});
-  if (found.score.d2 < before) found.kind = CurveKind::orthogonal_distance;
+  Level<dim> level(problem, found.nodes.n, effort);
+  level.offer(found.nodes, true);
+  if (!level.at_floor())
+    level.polish(level.best, {.most = last_polish, .least_gain = last_gain});
+  else if (!within(problem, level.best.score, rounding))
+    level.offer(arc_length_nodes(problem, found.nodes.n), false);
+  found = level.best;
 }
 
 template <int dim>
@@ -347,10 +349,14 @@ void climb(const Problem<dim>& problem, int degree, const Quick<dim>& quick, Fou
       Level<dim> top(problem, degree, effort);
       const Nodes<dim> start = lift(problem, even ? plain.nodes : last.nodes, degree);
       top.offer(start, true);
+      if (quick.good) top.offer(quick.found.nodes, true);
       if (even) {
         top.newton(start, true);
         top.polish(top.best, {.most = 8});
       }
+      // Digits below that, in which a placement by formula may be ahead.
+      if (!within(problem, top.best.score, rounding))
+        top.offer(arc_length_nodes(problem, degree), false);
       best = top.best;
       root = top.root;
       return;
@@ -388,7 +394,7 @@ void climb(const Problem<dim>& problem, int degree, const Quick<dim>& quick, Fou
         level.explore(crowded(problem, from.nodes, from.score.far_xi, density), 2);
       }
     }
-    if (final && !level.at_floor()) offer_simple(problem, level, n);
+    if (final && !within(problem, level.best.score, rounding)) offer_simple(problem, level, n);
     const bool gained = level.done(last, enough);
     if (final)
       level.polish(level.best, {.most = last_polish, .least_gain = last_gain});

@@ -238,7 +238,8 @@ template <int dim>
 struct Score {
   double d2 = HUGE_VAL;                ///< sqrt(int d^2 |p'|)
   double min_speed = 0.0;              ///< smallest |p'| / (L / 2)
-  bool valid = false;                  ///< nodes ordered, min_speed >= 1e-3
+  double length = 0.0;                 ///< of p, over L
+  bool valid = false;                  ///< nodes ordered, min_speed >= 1e-3, length >= 1 / 4
   double slow_xi = 0.0, far_xi = 0.0;  ///< where |p'| is smallest, and d largest
   using Row = std::array<double, std::size_t(4) * max_curve_degree>;
   int points = 0;                   ///< entries of the rows below
@@ -250,6 +251,7 @@ struct Score {
   Score& operator=(const Score& other) {
     d2 = other.d2;
     min_speed = other.min_speed;
+    length = other.length;
     valid = other.valid;
     slow_xi = other.slow_xi;
     far_xi = other.far_xi;

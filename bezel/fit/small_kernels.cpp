@@ -19,22 +19,32 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::CappedTag<double, padding>;
 
-// Rows [from, to) of a block of columns: x -= v[r] f, then the sum of next[r] x is added to `sum`.
-// In the block of the next pivot column, `next` is taken from it.
-template <bool with_pivot>
+// Rows [from, to) of one or two vectors of columns: x -= v[r] f, then the sum of next[r] x is added
+// to `sum`. In the block of the next pivot column, `next` is taken from it.
+template <bool with_pivot, bool two>
 HWY_INLINE void sweep(double* a, int stride, int from, int to, const double* v, const double* f,
                       const double* pivot, double* next, double* sum) {
   const D d;
+  const std::size_t lanes = hn::Lanes(d);
   const auto factor = hn::LoadU(d, f);
-  auto total = hn::Zero(d);
+  const auto factor2 = two ? hn::LoadU(d, f + lanes) : factor;
+  auto total = hn::Zero(d), total2 = total;
   for (int r = from; r < to; ++r) {
     double* row = a + std::ptrdiff_t(r) * stride;
-    const auto x = hn::Sub(hn::LoadU(d, row), hn::Mul(hn::Set(d, v[r]), factor));
+    const auto head = hn::Set(d, v[r]);
+    const auto x = hn::Sub(hn::LoadU(d, row), hn::Mul(head, factor));
     hn::StoreU(x, d, row);
     if constexpr (with_pivot) next[r] = pivot[std::ptrdiff_t(r) * stride];
-    total = hn::Add(total, hn::Mul(hn::Set(d, next[r]), x));
+    const auto weight = hn::Set(d, next[r]);
+    total = hn::Add(total, hn::Mul(weight, x));
+    if constexpr (two) {
+      const auto x2 = hn::Sub(hn::LoadU(d, row + lanes), hn::Mul(head, factor2));
+      hn::StoreU(x2, d, row + lanes);
+      total2 = hn::Add(total2, hn::Mul(weight, x2));
+    }
   }
   hn::StoreU(total, d, sum);
+  if constexpr (two) hn::StoreU(total2, d, sum + lanes);
 }
 
 void triangularise(int n, const Profile& profile, int stride, double* a, double* work) {
@@ -64,9 +74,16 @@ void triangularise(int n, const Profile& profile, int stride, double* a, double*
       if (c + 1 == n) break;
     }
     const int first = (c + 1) / lanes * lanes;
-    sweep<true>(a + first, stride, c + 1, end, v, f + first, a + c + 1, next, sum + first);
-    for (int k = first + lanes; k < width; k += lanes)
-      sweep<false>(a + k, stride, c + 1, end, v, f + k, nullptr, next, sum + k);
+    int k = first + lanes;
+    if (k < width) {
+      sweep<true, true>(a + first, stride, c + 1, end, v, f + first, a + c + 1, next, sum + first);
+      k += lanes;
+    } else {
+      sweep<true, false>(a + first, stride, c + 1, end, v, f + first, a + c + 1, next, sum + first);
+    }
+    for (; k + lanes < width; k += 2 * lanes)
+      sweep<false, true>(a + k, stride, c + 1, end, v, f + k, nullptr, next, sum + k);
+    if (k < width) sweep<false, false>(a + k, stride, c + 1, end, v, f + k, nullptr, next, sum + k);
     std::swap(v, next);
     // Rows that come in with the next column have not been in a reflector yet.
     const int more = std::min(profile.rows, profile.first + profile.growth * (c + 2));
@@ -111,13 +128,24 @@ bool eliminate(int n, int stride, double* a) {
 void combine(int n, int stride, const double* table, const double* x, double* out) {
   const D d;
   const int lanes = int(hn::Lanes(d));
-  for (int a = 0; a < stride; a += lanes) {
-    auto total = hn::Zero(d);
-    for (int k = 0; k < n; ++k)
-      total = hn::Add(
-          total, hn::Mul(hn::LoadU(d, table + std::ptrdiff_t(k) * stride + a), hn::Set(d, x[k])));
+  int a = 0;
+  for (; a + lanes < stride; a += 2 * lanes) {
+    auto total = hn::Zero(d), total2 = total;
+    const double* column = table + a;
+    for (int k = 0; k < n; ++k, column += stride) {
+      const auto factor = hn::Set(d, x[k]);
+      total = hn::Add(total, hn::Mul(hn::LoadU(d, column), factor));
+      total2 = hn::Add(total2, hn::Mul(hn::LoadU(d, column + lanes), factor));
+    }
     hn::StoreU(total, d, out + a);
+    hn::StoreU(total2, d, out + a + lanes);
   }
+  if (a == stride) return;
+  auto total = hn::Zero(d);
+  const double* column = table + a;
+  for (int k = 0; k < n; ++k, column += stride)
+    total = hn::Add(total, hn::Mul(hn::LoadU(d, column), hn::Set(d, x[k])));
+  hn::StoreU(total, d, out + a);
 }
 
 }  // namespace bezel::small::HWY_NAMESPACE
