@@ -174,17 +174,24 @@ double ElementTransfer::largest_partition_residual(std::int32_t t) const {
 // to 142 times the distance in 40000 pairs of thin elements and elements far from the origin.
 void ElementTransfer::note_region(std::int32_t t, std::int32_t d, double area, double gap,
                                   ElementOutcome& outcome) const {
-  double size = target_.element_diameter[static_cast<std::size_t>(t)];
-  double smaller = target_.element_area[static_cast<std::size_t>(t)];
-  double width = target_.element_width(t);
+  const double own_size = target_.element_diameter[static_cast<std::size_t>(t)];
+  const double own_area = target_.element_area[static_cast<std::size_t>(t)];
+  double size = own_size, smaller = own_area;
+  double donor_size = own_size, donor_area = own_area;
   if (d != exterior) {
-    size = std::min(size, donor_.element_diameter[static_cast<std::size_t>(d)]);
-    smaller = std::min(smaller, donor_.element_area[static_cast<std::size_t>(d)]);
-    width = std::min(width, donor_.element_width(d));
+    donor_size = donor_.element_diameter[static_cast<std::size_t>(d)];
+    donor_area = donor_.element_area[static_cast<std::size_t>(d)];
+    size = std::min(size, donor_size);
+    smaller = std::min(smaller, donor_area);
   }
+  outcome.max_joint_gap = std::max(outcome.max_joint_gap, gap / size);
+  // Closed to far less than either element's width, 2 area / size: the usual case.
+  if (area >= 0.0 && gap * own_size <= 2.0 * largest_joint_gap * own_area &&
+      gap * donor_size <= 2.0 * largest_joint_gap * donor_area)
+    return;
+  const double width = 2.0 * std::min(own_area / own_size, donor_area / donor_size);
   const double distance = coincidence_distance(
       width, geometry_kernel::largest_coordinate(target_.element_box[static_cast<std::size_t>(t)]));
-  outcome.max_joint_gap = std::max(outcome.max_joint_gap, gap / size);
   if (area < -std::max(largest_joint_gap * smaller, distance * size)) outcome.inconsistent = true;
   const double widest = std::max(largest_joint_gap * width, 256.0 * distance);
   if (gap <= widest) return;
