@@ -4,11 +4,15 @@
 #include <cmath>
 #include <limits>
 
+#include "bezel/geometry/curve.hpp"
 #include "bezel/geometry/curve_kernel.hpp"
 #include "bezel/transfer/element_kernel.hpp"
 
 namespace bezel::detail {
 namespace {
+
+/// Along a strip between edges that nearly coincide: its area is rounding, a few digits will do.
+constexpr int strip_points = 6;
 
 /// The largest area between a step and an edge of the element, over the element's diameter.
 double joint_width(const OverlayMesh& mesh, std::int32_t e, const Vec2& step) {
@@ -62,7 +66,7 @@ double ElementTransfer::bridge_joints() {
     }
     return best;
   };
-  const double rounding = 0x1p-51 * extent;  // of a point reached along two curves
+  const double rounding = point_rounding * extent;  // of a point reached along two curves
   std::size_t open = 0;
   for (const Vec2& end : piece_ends_) {
     const auto start = take_nearest(end, rounding);
@@ -85,6 +89,75 @@ double ElementTransfer::bridge_joints() {
     widest = std::max(widest, norm(step));
   }
   return widest;
+}
+
+// Where edges nearly coincide the regions are bounded by the target's edge on either side of it.
+// What lies between it and the donor's edge is given back to the donor there, so that each donor
+// element gives what it has: to its one owner of the two target elements, or to the books where one
+// mesh ends.
+void ElementTransfer::give_strips(std::int32_t t, const ElementPieces& own, std::size_t components,
+                                  GivenList& given, std::span<double> made) {
+  const IntervalRule& line = rule(strip_points);
+  const std::size_t pairs = given.donor.size();
+  std::size_t entry = pairs;
+  for (const std::int32_t d : own.donors) entry -= d == exterior ? 0 : 1;
+  std::vector<double> mass(2 * components), values(components);
+  for (std::size_t k = 0; k < own.donors.size(); ++k) {
+    const std::int32_t near = own.donors[k];
+    for (const Segment& segment : run_of(own, k)) {
+      const std::int32_t far = segment.across;
+      if (far == one_curve || far == near) continue;
+      const auto& sides = target_.edge_sides[static_cast<std::size_t>(segment.target.edge)];
+      if ((sides[0] != exterior ? sides[0] : sides[1]) != t) continue;
+      const auto curve = target_.edge(segment.target.edge);
+      const auto other = donor_.edge(segment.source.edge);
+      const double step = segment.target.to - segment.target.from;
+      std::fill(mass.begin(), mass.end(), 0.0);
+      double area = 0.0;
+      for (std::size_t q = 0; q < line.node.size(); ++q) {
+        const auto [x, slope] = edge_point(curve, segment.target.from + step * line.node[q]);
+        // Positive where T reaches beyond the donor's edge.
+        const double width = cross(slope, foot_point(other, x).point - x) * (step * line.weight[q]);
+        area += width;
+        std::size_t c0 = 0;
+        for (const Group& g : groups_) {
+          const auto nc = static_cast<std::size_t>(g.components);
+          for (std::size_t side = 0; side < 2; ++side) {
+            const std::int32_t d = side == 0 ? near : far;
+            if (d == exterior) continue;
+            std::array<double, 3> warm{};
+            bool have_warm = false;
+            const auto at = detail::donor_place(g, donor_, d, x, warm, have_warm);
+            evaluate_scaled(g.donor_space->degree(ElementId(d)), g.components,
+                            g.donor_scaled(d).data(), at[0], at[1], values.data());
+            for (std::size_t c = 0; c < nc; ++c)
+              mass[side * components + c0 + c] += values[c] * width;
+          }
+          c0 += nc;
+        }
+      }
+      if (near != exterior) {
+        given.area[entry] -= area;
+        for (std::size_t c = 0; c < components; ++c) given.mass[entry * components + c] -= mass[c];
+      }
+      if (far != exterior) {
+        given.target.push_back(t);
+        given.donor.push_back(far);
+        given.area.push_back(area);
+        given.mass.insert(given.mass.end(), mass.begin() + static_cast<std::ptrdiff_t>(components),
+                          mass.end());
+      }
+      for (std::size_t c = 0; c < components; ++c) {
+        const double change = mass[components + c] - mass[c];
+        if (near != exterior && far != exterior) {
+          masses_[c] += change;
+        } else {
+          made[c] -= change;
+        }
+      }
+    }
+    entry += near == exterior ? 0 : 1;
+  }
 }
 
 // Partitions close to the rounding of the coordinates, which is large beside a thin element's

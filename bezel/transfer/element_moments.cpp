@@ -14,7 +14,7 @@ namespace bezel::detail {
 namespace {
 
 /// Donors smaller than this fraction of the target's area get their areas from rays of their own.
-constexpr double small_area = 1.0 / 256.0;
+constexpr double small_area = 1.0 / 64.0;
 
 Vec2 mix(const Vec2& a, const Vec2& b, double s) {
   return (1.0 - s) * a + s * b;

@@ -419,6 +419,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
     }
     c0 += nc;
   }
+  if (loose_ && blocks == nullptr && components > 0) give_strips(t, own, components, given, made);
   outcome.partition_residual = std::abs(total - own_area) / own_area;
   if (outcome.partition_residual > largest_joint_gap &&
       outcome.partition_residual > largest_partition_residual(t))

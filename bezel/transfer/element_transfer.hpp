@@ -93,6 +93,8 @@ class ElementTransfer {
   /// Also fills piece_control_ and bridges_.
   RunShape run_shape(std::span<const Segment> run);
   double bridge_joints();
+  void give_strips(std::int32_t t, const ElementPieces& own, std::size_t components,
+                   GivenList& given, std::span<double> made);
   double largest_partition_residual(std::int32_t t) const;
   // By moments (element_moments.cpp).
   static bool by_moments(const Group& g, std::int32_t t, std::int32_t d);

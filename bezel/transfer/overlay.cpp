@@ -168,7 +168,8 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
       ++record.tangencies;
     }
     for (const Overlap& c : found_.overlaps) {
-      coincidences_.push_back({c.s0, c.s1, opposite(c.s0, c.t0), opposite(c.s1, c.t1), e});
+      coincidences_.push_back({c.s0, c.s1, opposite(c.s0, c.t0), opposite(c.s1, c.t1), e,
+                               c.gap > point_rounding * std::max(own.magnitude, facing.magnitude)});
       ++record.overlaps;
     }
     for (const UnresolvedBox& c : found_.unresolved) {
@@ -241,8 +242,8 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
 
 void ElementOverlay::add_donor_part(std::int32_t edge, double s0, double s1) {
   const auto& sides = donor_.edge_sides[static_cast<std::size_t>(edge)];
-  segments_.push_back({sides[0], Part{}, Part{edge, s0, s1}});
-  segments_.push_back({sides[1], Part{}, Part{edge, s1, s0}});
+  segments_.push_back({sides[0], one_curve, Part{}, Part{edge, s0, s1}});
+  segments_.push_back({sides[1], one_curve, Part{}, Part{edge, s1, s0}});
 }
 
 void ElementOverlay::donor_edges_inside(std::int32_t t) {
@@ -409,6 +410,7 @@ void ElementOverlay::find_segments(std::int32_t t) {
         };
         segment.source = {c.donor_edge, map(piece.r0), map(piece.r1)};
         segment.donor = facing;
+        if (c.apart) segment.across = facing_coincidence(record, piece, !side.reversed).second;
       }
       if (side.reversed) {
         std::swap(segment.target.from, segment.target.to);

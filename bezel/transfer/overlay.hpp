@@ -26,6 +26,7 @@ namespace bezel::detail {
 inline constexpr double coincidence_fraction = 1e-13;
 /// ... and never less than the rounding of the coordinates themselves.
 inline constexpr double coordinate_rounding = 32.0 * 0x1p-53;
+inline constexpr double point_rounding = 4.0 * 0x1p-53;
 inline double coincidence_distance(double smallest_width, double largest_coordinate) {
   return std::max(coincidence_fraction * smallest_width, coordinate_rounding * largest_coordinate);
 }
@@ -47,13 +48,18 @@ struct Part {
   double from = 0, to = 0;
 };
 
+/// Instead of an element: both parts of a segment are one curve.
+inline constexpr std::int32_t one_curve = -2;
+
 /// One piece of the boundary of (T n donor), run counter-clockwise. A piece on both meshes' edges
 /// has both parts.
 struct Segment {
   std::int32_t donor =
       exterior;  ///< donor element, or exterior: the part of T that no donor covers
-  Part target;   ///< edge -1 when the piece is no part of T's boundary
-  Part source;   ///< the same for the donor's boundary
+  std::int32_t across = one_curve;  ///< of parts that are apart by more than the rounding of
+                                    ///< points: the donor element beyond, or exterior
+  Part target;                      ///< edge -1 when the piece is no part of T's boundary
+  Part source;                      ///< the same for the donor's boundary
 };
 
 /// One piece of the boundaries inside or around a target element T, with the regions T n D on its
@@ -135,6 +141,7 @@ class ElementOverlay {
   struct Coincidence {
     double r0, r1, s0, s1;
     std::int32_t donor_edge;
+    bool apart;  // by more than the rounding of points
   };
   struct Piece {
     double r0, r1;

@@ -208,12 +208,12 @@ TEST_P(Jitter, NothingIsLost) {
       const TransferResult result = transfer(fields, target, options);
       const std::string where =
           "g " + std::to_string(g) + " k " + std::to_string(k) + " kind " + std::to_string(kind);
-      EXPECT_LE(error_norms(result.fields[0], {&constant, 1}).max, 3.25 * 1e-12) << where;
+      EXPECT_LE(error_norms(result.fields[0], {&constant, 1}).max, 3.25 * 1e-13) << where;
       EXPECT_LE(result.report.max_partition_residual, 1e-14) << where;
       EXPECT_LE(result.report.max_joint_gap, 1e-11) << where;
       EXPECT_EQ(result.report.unresolved, 0) << where;
       for (const FieldReport& f : result.report.fields)
-        EXPECT_LE(f.relative_mass_defect, 1e-13) << where;
+        EXPECT_LE(f.relative_mass_defect, 1e-14) << where;
       if (k < 13) continue;
       // The same mesh to rounding: the field must come back, jumps and all.
       for (std::size_t e = 0; e < donor->element_count(); ++e) {
