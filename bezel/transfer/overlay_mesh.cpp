@@ -116,6 +116,10 @@ FrontSearch::FrontSearch(const OverlayMesh& mesh) : mesh_(mesh), tree_(mesh.elem
   collect_edges_at_vertices();
 }
 
+FrontSearch::FrontSearch(const OverlayMesh& part, bool connected) : FrontSearch(part) {
+  connected_ = connected;
+}
+
 void FrontSearch::collect_edges_at_vertices() {
   const std::size_t vertices = mesh_.mesh->node_count();
   vertex_offset_.assign(vertices + 1, 0);
