@@ -3,9 +3,10 @@
 // the meshes and fields, and what it sends back.
 //
 // A share is a run of whole chunks of OverlayMesh::spatial_order(). Its parts of the two meshes
-// number elements and nodes in the order of the whole meshes, and hold the neighbours of all
-// elements that matter, so that every edge of those has the number (up to gaps), the direction and
-// the sides it has in the whole: all sums run in the same order, to the same bits.
+// number elements and nodes in the order of the whole meshes, and hold both elements of every edge
+// that matters: of the target the edges of own elements, of the donor those that meet one. So these
+// edges have the order, the directions and the sides that they have in the whole, and all sums run
+// in the same order, to the same bits.
 
 #include <cstddef>
 #include <cstdint>
@@ -26,7 +27,7 @@ struct Share {
   std::vector<std::int32_t> own;      ///< target elements, in the order of the chunks
   std::vector<std::int32_t> targets;  ///< ascending: own and their neighbours
   std::vector<std::int32_t> donors;   ///< ascending: all that may meet, or continue a field to, own
-                                      ///< elements, and their neighbours
+                                      ///< elements
 };
 
 /// Runs of chunks with about the same work: as many candidates for pairs, by their boxes. Some are

@@ -106,7 +106,6 @@ std::vector<Share> split_work(const OverlayMesh& donor, const OverlayMesh& targe
     for (std::size_t c = share.first_chunk; c < next; ++c)
       share.donors.insert(share.donors.end(), met[c].begin(), met[c].end());
     make_unique(share.donors);
-    share.donors = with_neighbours(donor, std::move(share.donors));
   }
   return shares;
 }

@@ -176,16 +176,34 @@ TEST(Share, SameBitsWhereFieldsAreContinuedFarAway) {
   const MeshPtr donor = part_of(bent_grid(2), [](const Vec2& p) {
     return std::abs(p[0] - 0.4) > 0.2 && !(norm(p + Vec2{{0.4, 0.0}}) < 0.3);
   });
-  const Field f = wave(Space::discontinuous(donor, 2));
-  const MeshPtr target = turned(test::grid_mesh(20, 1, 1.0, test::same_place), 0.2, 3.0, {});
+  const Field f = wave(Space::discontinuous(donor, 1));
+  const MeshPtr square = test::grid_mesh(20, 1, 1.0, test::same_place);
   TransferOptions options;
-  for (const Uncovered policy : {Uncovered::extend, Uncovered::zero}) {
-    options.uncovered = policy;
-    check({&f, 1}, target, options);
-  }
+  options.degree = 1;
+  options.uncovered = Uncovered::extend;
+  check({&f, 1}, turned(square, 0.2, 3.0, {}), options);
+  options.uncovered = Uncovered::zero;
+  check({&f, 1}, turned(square, 0.2, 3.0, {}), options);
   options.uncovered = Uncovered::extend;
   options.conserve = Conserve::total;
-  check({&f, 1}, target, options);
+  check({&f, 1}, turned(square, 0.2, 1.1, {}), options);
+}
+
+// What the whole donor is (of one degree, in one piece) decides; the parts are of one degree and in
+// one piece.
+TEST(Share, SameBitsForADonorOfPiecesAndDegrees) {
+  for (const int g : {1, 2}) {
+    const MeshPtr donor = part_of(test::grid_mesh(34, g, 1.0, test::bend(0.1, 0.1)),
+                                  [](const Vec2& p) { return std::abs(p[1]) > 0.1; });
+    std::vector<int> degrees;
+    for (std::size_t e = 0; e < donor->element_count(); ++e)
+      degrees.push_back(donor->box(ElementId(e)).centre()[1] < 0.5 ? 1 : 2);
+    const Field f = wave(Space::discontinuous(donor, degrees));
+    TransferOptions options;
+    options.degree = 1;
+    options.uncovered = Uncovered::extend;
+    check({&f, 1}, turned(test::grid_mesh(17, 1, 1.0, test::same_place), 0.05, 1.02, {}), options);
+  }
 }
 
 TEST(Share, SameBitsForBoundsContinuousTargetsAndWeights) {
