@@ -280,19 +280,18 @@ TransferResult move(const TransferCommand& options, std::span<const Field> field
 
 int run(const TransferCommand& options, const Context& context) {
   check_usage(options);
-  TransferOptions how_to = transfer_options(options, context);
+  const TransferOptions how_to = transfer_options(options, context);
   const bool series = is_collection(options.donor) || is_collection(options.out);
   if (launch().size > 1) {
     if (series) throw UsageError("a time series is moved by one process: start it without mpirun");
     if (!options.matrix.empty()) throw UsageError("--matrix: by one process only");
     if (options.mass_method == "petsc")
       throw UsageError("--mass-method petsc: in one process only");
-    // Several processes with all threads each would be in each other's way.
-    if (how_to.threads == 0) how_to.threads = 1;
   }
   const std::unique_ptr<Processes> processes = join_processes();
   if (processes && processes->rank() > 0) {
-    processes->serve(how_to.threads);
+    // Several processes with all threads each would be in each other's way.
+    processes->serve(std::max(how_to.threads, 1));
     return ok;
   }
   if (series) {

@@ -44,6 +44,7 @@ Json processes_json(const Processes& processes) {
   }
   return {{"count", processes.size()},
           {"imbalance", imbalance(processes.shares())},
+          {"alone_cpu_seconds", processes.alone_cpu_seconds()},
           {"shares", shares}};
 }
 
@@ -58,8 +59,9 @@ std::string processes_table(const Processes& processes) {
                         static_cast<double>(share.bytes_in) / mega,
                         static_cast<double>(share.bytes_out) / mega, share.cpu_seconds);
   }
-  return text +
-         fmt::format("largest processor time {:.2f} of the mean\n", imbalance(processes.shares()));
+  return text + fmt::format(
+                    "largest processor time {:.2f} of the mean; {:.3g} s more of process 0 alone\n",
+                    imbalance(processes.shares()), processes.alone_cpu_seconds());
 }
 
 }  // namespace bezel::cli

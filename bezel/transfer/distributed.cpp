@@ -144,6 +144,7 @@ struct Processes::Impl {
   int rank = 0, size = 1;
   bool served = false;
   std::vector<ShareReport> shares;
+  double alone = 0;
 
   std::vector<detail::ChunkResult> sweep(const detail::OverlayMesh& donor,
                                          const detail::OverlayMesh& target,
@@ -186,6 +187,10 @@ const std::vector<ShareReport>& Processes::shares() const {
   return impl_->shares;
 }
 
+double Processes::alone_cpu_seconds() const {
+  return impl_->alone;
+}
+
 void Processes::serve(int threads) {
   if (impl_->rank == 0) throw InputError("transfer: rank 0 serves no other process");
   while (true) {
@@ -219,11 +224,13 @@ std::vector<detail::ChunkResult> Processes::Impl::sweep(const detail::OverlayMes
   std::vector<detail::ChunkResult> chunks(split.back().first_chunk + split.back().chunk_count);
   // The others' answers are taken even when something went wrong: they would wait with them.
   std::exception_ptr error;
+  TransferOptions own_options = options;
+  if (own_options.threads == 0) own_options.threads = 1;
   try {
     const detail::Share& own = split[0];
     const detail::Stopwatch watch;
     std::vector<detail::ChunkResult> here =
-        detail::sweep_elements(donor, target, search, groups, own.own, options, progress);
+        detail::sweep_elements(donor, target, search, groups, own.own, own_options, progress);
     ShareReport& report = shares[0];
     report.targets += static_cast<std::int64_t>(own.own.size());
     report.donors += static_cast<std::int64_t>(own.donors.size());
@@ -275,7 +282,10 @@ TransferResult Processes::transfer(std::span<const Field> donors,
                          const TransferOptions& how, const Progress& done) {
     return impl_->sweep(from, to, search, groups, how, done);
   };
-  return detail::transfer_by(sweep, donors, target, options, progress);
+  const detail::Stopwatch watch;
+  TransferResult result = detail::transfer_by(sweep, donors, target, options, progress);
+  impl_->alone = watch.cpu_seconds() - impl_->shares[0].cpu_seconds;
+  return result;
 }
 
 #else
@@ -305,6 +315,9 @@ TransferResult Processes::transfer(std::span<const Field>, std::shared_ptr<const
 }
 const std::vector<ShareReport>& Processes::shares() const {
   return impl_->shares;
+}
+double Processes::alone_cpu_seconds() const {
+  return 0;
 }
 
 #endif

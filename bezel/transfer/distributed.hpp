@@ -66,7 +66,8 @@ class Processes {
 
   /// On rank 0: bezel::transfer() with the work on the target elements shared by all processes.
   /// Fields and report have the same bits (but for the seconds, whose parts are summed over the
-  /// processes).
+  /// processes). With options.threads = 0 rank 0 works on its share with one thread, as the others
+  /// do by default, and on what it does alone with all that it may use.
   /// @throws as bezel::transfer(), also for what went wrong elsewhere (what a single process would
   ///         have met first); InputError on another rank, or for MassMethod::petsc, which works in
   ///         one process only
@@ -77,6 +78,8 @@ class Processes {
 
   /// On rank 0: what each rank did for the last transfer.
   const std::vector<ShareReport>& shares() const;
+  /// On rank 0: processor time of the last transfer besides its share: what it did alone.
+  double alone_cpu_seconds() const;
 
  private:
   struct Impl;
