@@ -164,7 +164,7 @@ void ElementTransfer::add_pair_moments(const Group& g, std::int32_t t, std::int3
 bool ElementTransfer::can_batch(const Group& g) {
   const int degree = g.target_space->uniform_degree();
   return !g.donor_mapped && !g.target_mapped && degree >= 0 && degree <= max_moment_degree &&
-         degree == g.donor_space->uniform_degree();
+         degree == g.donor_degree.uniform;
 }
 
 TargetPlace ElementTransfer::target_place(const Group& g, std::int32_t t) {

@@ -87,7 +87,7 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
     }
   }
   if (!factorize(n, f)) {
-    throw NumericsError("target triangle " + std::to_string(t) +
+    throw NumericsError("target triangle " + std::to_string(target_.number_of(t)) +
                         ": its mass matrix is singular in double precision (degree " +
                         std::to_string(p) + " on a degenerate element)");
   }

@@ -43,6 +43,7 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
              std::span<const Field* const> fields, std::shared_ptr<const Space> target_space_in)
     : donor_space(fields.front()->space_ptr()),
       target_space(std::move(target_space_in)),
+      donor_degree{donor_space->highest_degree(), donor_space->uniform_degree()},
       donor_mapped(donor_space->basis() == Basis::reference && donor.degree > 1),
       target_mapped(target_space->basis() == Basis::reference && target.degree > 1) {
   for (const Field* f : fields) components += f->components();
@@ -70,6 +71,29 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
     c0 += own;
   }
   out.resize(target_space->coefficient_count() * nc);
+  make_powers(elements);
+}
+
+Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
+             std::shared_ptr<const Space> donor_space_in,
+             std::shared_ptr<const Space> target_space_in, int components_in,
+             DonorDegree donor_degree_in, std::vector<double> scaled_in,
+             std::vector<double> donor_mass_in)
+    : donor_space(std::move(donor_space_in)),
+      target_space(std::move(target_space_in)),
+      components(components_in),
+      donor_degree(donor_degree_in),
+      donor_mapped(donor_space->basis() == Basis::reference && donor.degree > 1),
+      target_mapped(target_space->basis() == Basis::reference && target.degree > 1),
+      scaled(std::move(scaled_in)),
+      donor_mass(std::move(donor_mass_in)) {
+  make_frames(donor, target);
+  out.resize(target_space->coefficient_count() * static_cast<std::size_t>(components));
+  make_powers(donor.element_count());
+}
+
+void Group::make_powers(std::size_t elements) {
+  const auto nc = static_cast<std::size_t>(components);
   if (donor_mapped || target_mapped) return;
   powers.assign(scaled.size() + donor_padding, 0.0);
   for (std::size_t e = 0; e < elements; ++e) {
@@ -94,6 +118,7 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
     : donor_space(std::move(donor_space_in)),
       target_space(std::move(target_space_in)),
       components(bernstein::triangle_size(donor_space->highest_degree())),
+      donor_degree{donor_space->highest_degree(), donor_space->uniform_degree()},
       donor_mapped(donor_space->basis() == Basis::reference && donor.degree > 1),
       target_mapped(target_space->basis() == Basis::reference && target.degree > 1) {
   make_frames(donor, target);

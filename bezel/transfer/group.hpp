@@ -15,6 +15,12 @@ namespace bezel::detail {
 /// The triangle itself as a frame: lambda_k are its barycentrics.
 Frame affine_frame(const std::array<Vec2, 3>& corners);
 
+/// Degrees of a donor's elements.
+struct DonorDegree {
+  int highest = 0;
+  int uniform = -1;  ///< -1 when they differ
+};
+
 /// The components of all donor fields that share a donor space and go to the same target space.
 struct Group {
   Group(const OverlayMesh& donor, const OverlayMesh& target, std::span<const Field* const> fields,
@@ -25,9 +31,16 @@ struct Group {
         std::shared_ptr<const Space> donor_space, std::shared_ptr<const Space> target_space,
         int threads);
 
+  /// On parts of the meshes: `scaled` and `donor_mass` are those of a group on the whole ones.
+  Group(const OverlayMesh& donor, const OverlayMesh& target,
+        std::shared_ptr<const Space> donor_space, std::shared_ptr<const Space> target_space,
+        int components, DonorDegree donor_degree, std::vector<double> scaled,
+        std::vector<double> donor_mass);
+
   std::shared_ptr<const Space> donor_space, target_space;
   std::shared_ptr<const Space> continuous_space;  ///< where the result is projected next, or null
   int components = 0;
+  DonorDegree donor_degree;          ///< of the whole donor, on a part too
   bool donor_mapped, target_mapped;  ///< polynomial in reference coordinates of a curved element
   std::vector<Frame>
       donor_frame;  ///< affine triangles of the donor's polynomials that are not mapped
@@ -54,6 +67,7 @@ struct Group {
   }
 
  private:
+  void make_powers(std::size_t elements);
   void make_frames(const OverlayMesh& donor, const OverlayMesh& target);
   std::vector<std::size_t> scaled_offset_;  // per degree, for basis functions
 };
