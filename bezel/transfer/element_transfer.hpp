@@ -127,6 +127,12 @@ class ElementTransfer {
   void finish(const Group& g, std::int32_t t, const Accumulators& sums,
               std::span<const double> mass, double area, std::span<double> result,
               ElementOutcome& outcome);
+  struct Solution;
+  /// As finish(), for up to `width` components from number c0 on.
+  template <std::size_t width>
+  static void finish_components(const Solution& s, const Accumulators& sums,
+                                std::span<const double> mass, std::size_t c0,
+                                std::span<double> result, ElementOutcome& outcome);
   const MassRule& mass_rule(int degree);
   static bool factorize(std::size_t n, Factor& factor);
   const Factor& factor(const Group& g, std::int32_t t);

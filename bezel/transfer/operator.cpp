@@ -9,9 +9,11 @@
 
 #include "bezel/base/atomic_file.hpp"
 #include "bezel/base/parallel.hpp"
+#include "bezel/field/integrals.hpp"
 #include "bezel/transfer/element_mass.hpp"
 #include "bezel/transfer/layout.hpp"
 #include "bezel/transfer/operator_rows.hpp"
+#include "bezel/transfer/report.hpp"
 #include "bezel/transfer/sweep.hpp"
 
 namespace bezel {
@@ -93,7 +95,7 @@ TransferOperator::TransferOperator(std::shared_ptr<const Space> donor,
                     });
   m.rows.index_donors();
   m.made = m.rows.take_made();
-  m.integrals = detail::basis_integrals(m.target, options.threads);
+  m.integrals = field_detail::basis_integrals(*m.target, options.threads);
   const auto columns = static_cast<std::size_t>(group.components);
   for (const std::int32_t d : swept.outside) {
     const std::size_t begin = static_cast<std::size_t>(d) * columns;
@@ -215,8 +217,11 @@ TransferResult TransferOperator::transfer(std::span<const Field> donors, int thr
   TransferResult result;
   result.report = m.report;
   result.report.seconds = {};
-  for (const Field& f : donors) {
-    const Impl::Applied applied = m.apply(f, threads);
+  detail::Reports reports(donors.size(), threads);
+  result.fields.reserve(donors.size());
+  for (std::size_t k = 0; k < donors.size(); ++k) {
+    const Field& f = donors[k];
+    Impl::Applied applied = m.apply(f, threads);
     const auto nc = static_cast<std::size_t>(f.components());
     std::vector<double> outside(nc, 0.0);
     std::vector<double> made(nc, 0.0);
@@ -229,10 +234,10 @@ TransferResult TransferOperator::transfer(std::span<const Field> donors, int thr
     for (std::size_t i = 0; i < m.outside.size(); ++i) add(m.outside[i], m.lost[i], outside);
     for (const OperatorRows::MadeMass& part : m.made) add(part.donor, part.mass, made);
     const std::vector<double> defect(nc, applied.max_mass_defect);
-    detail::append_reports(f, applied.field, outside, made, {}, defect, threads,
-                           result.report.fields);
-    result.fields.push_back(applied.field);
+    result.fields.push_back(std::move(applied.field));
+    reports.add(k, f, result.fields.back(), outside, made, {}, defect);
   }
+  result.report.fields = reports.finish();
   result.report.seconds.total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

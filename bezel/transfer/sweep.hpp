@@ -76,12 +76,4 @@ Swept sweep(const OverlayMesh& donor, const OverlayMesh& target, std::span<Group
 /// All groups' components.
 std::size_t component_count(std::span<const Group> groups);
 
-/// One line per component of a field that was moved.
-/// @param spread          mass added besides, or empty
-/// @param element_defect  largest |element mass - mass received|, per component
-void append_reports(const Field& donor, const Field& moved, std::span<const double> outside,
-                    std::span<const double> made, std::span<const double> spread,
-                    std::span<const double> element_defect, int threads,
-                    std::vector<FieldReport>& out);
-
 }  // namespace bezel::detail

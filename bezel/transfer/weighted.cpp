@@ -11,6 +11,7 @@
 #include "bezel/numeric/sum.hpp"
 #include "bezel/transfer/element_mass.hpp"
 #include "bezel/transfer/layout.hpp"
+#include "bezel/transfer/report.hpp"
 #include "bezel/transfer/sweep.hpp"
 #include "bezel/transfer/weight.hpp"
 
@@ -300,7 +301,6 @@ TransferResult transfer_weighted(std::span<const Field> donors,
 
   TransferResult result;
   result.report = moved.report;
-  result.report.fields.clear();
   std::vector<char> partial(target->element_count(), 0);
   if (options.uncovered == Uncovered::zero && products.density == Products::none) {
     for (const auto& [element, area] : moved.report.uncovered_elements)
@@ -338,6 +338,7 @@ TransferResult transfer_weighted(std::span<const Field> donors,
     if (k != products.density) solve(k, carrier);
   }
 
+  detail::Reports reports(donors.size(), options.threads);
   std::size_t line = 0;  // of the inner report
   for (std::size_t k = 0; k < donors.size(); ++k) {
     const std::vector<double> size = products.size(k, options.threads);
@@ -356,17 +357,12 @@ TransferResult transfer_weighted(std::span<const Field> donors,
       out.relative_mass_defect =
           std::abs(out.mass_after - (out.mass_before - out.mass_outside + out.mass_made)) / scale;
       out.max_element_defect = recovered[k].max_mass_defect / scale;
-      const auto before = value_range(donors[k], out.component);
-      const auto after = value_range(*fields[k], out.component);
-      out.min_before = before.lo;
-      out.max_before = before.hi;
-      out.min_after = after.lo;
-      out.max_after = after.hi;
-      result.report.fields.push_back(out);
+      reports.add(k, donors[k], *fields[k], std::move(out));
     }
     line += parts * size.size();
-    result.fields.push_back(std::move(*fields[k]));
   }
+  result.report.fields = reports.finish();
+  for (std::optional<Field>& field : fields) result.fields.push_back(std::move(*field));
   result.report.seconds.total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
