@@ -12,6 +12,9 @@ namespace bezel::detail {
 
 namespace {
 
+/// An element is covered when its overlaps add up to its area within this fraction.
+constexpr double full_cover = 1e-9;
+
 constexpr std::size_t max_functions =
     static_cast<std::size_t>(bernstein::triangle_size(Space::max_degree));
 
@@ -61,14 +64,16 @@ void solve_in_place(std::size_t n, const double* lower, const double* inverse, d
 
 /// The target's polynomials may stay on the triangle they were computed on when the space's frame
 /// is that triangle, up to the rounding of barycentric coordinates at its place in the plane.
-bool is_same_frame(const std::array<Lambda, 3>& corners, const Frame& frame) {
+bool is_frame(const Frame& frame, const std::array<Vec2, 3>& corners) {
   double slope = 0.0;
   for (const Vec2& g : frame.gradient) slope = std::max({slope, std::abs(g[0]), std::abs(g[1])});
   const double reach = std::max(std::abs(frame.centre[0]), std::abs(frame.centre[1]));
   double largest = 0.0;
-  for (std::size_t k = 0; k < 3; ++k)
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Lambda l = frame.lambda(corners[k]);
     for (std::size_t i = 0; i < 3; ++i)
-      largest = std::max(largest, std::abs(corners[k][i] - (i == k ? 1.0 : 0.0)));
+      largest = std::max(largest, std::abs(l[i] - (i == k ? 1.0 : 0.0)));
+  }
   return largest <= 0x1p-51 * (2.0 + reach * slope);
 }
 
@@ -133,6 +138,32 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
   return f;
 }
 
+bool ElementTransfer::in_other_frame(const Group& g, std::int32_t t) const {
+  return g.target_space->basis() == Basis::physical &&
+         !(target_.degree == 1 &&
+           is_frame(g.target_space->frame(ElementId(t)), target_.corners(t)));
+}
+
+bool ElementTransfer::finish_straight(std::size_t i, std::int32_t t, std::span<const double> mass,
+                                      double area, std::span<double> result,
+                                      ElementOutcome& outcome) {
+  const Group& g = groups_[i];
+  const double own_area = target_.element_area[static_cast<std::size_t>(t)];
+  if (target_.degree != 1 || have_moments_[i] == 0 ||
+      std::abs(area - own_area) > full_cover * own_area)
+    return false;
+  for (const double m : sums_[i].basis)
+    if (m != 0.0) return false;  // extensions
+  if (in_other_frame(g, t)) return false;
+  const Accumulators& sums = moment_sums_[i];
+  const double defect =
+      solve_straight({g.target_space->degree(ElementId(t)), g.components, own_area, area,
+                      sums.product.data(), sums.basis.data(), mass.data(), base_[i].data()},
+                     result.data());
+  outcome.max_mass_defect = std::max(outcome.max_mass_defect, defect);
+  return true;
+}
+
 /// What the solution on one element needs besides its right-hand sides.
 struct ElementTransfer::Solution {
   const Factor& factor;
@@ -145,23 +176,25 @@ struct ElementTransfer::Solution {
 
 template <std::size_t width>
 void ElementTransfer::finish_components(const Solution& s, const Accumulators& sums,
-                                        std::span<const double> mass, std::size_t c0,
-                                        std::span<double> result, ElementOutcome& outcome) {
+                                        std::span<const double> mass, std::span<const double> base,
+                                        std::size_t c0, std::span<double> result,
+                                        ElementOutcome& outcome) {
   const std::size_t n = s.multinomials.size(), nc = mass.size();
   const std::size_t count = std::min(width, nc - c0);
   std::array<Pack<width>, max_functions> rhs;
   // Around the element's mean: what remains is small, so a constant comes back constant whatever
   // the rule.
-  Pack<width> goal{}, mean{}, excess{};
+  Pack<width> goal{}, mean{}, lacking{}, excess{};
   for (std::size_t c = 0; c < count; ++c) {
     goal.v[c] = mass[c0 + c];
     mean.v[c] = s.full ? goal.v[c] / s.received_area : 0.0;
+    lacking.v[c] = mean.v[c] - base[c0 + c];
   }
   for (std::size_t i = 0; i < n; ++i) {
     rhs[i] = {};
     const double* product = sums.product.data() + i * nc + c0;
     for (std::size_t c = 0; c < count; ++c) {
-      rhs[i].v[c] = (product[c] - mean.v[c] * sums.basis[i]) * s.multinomials[i];
+      rhs[i].v[c] = (product[c] - lacking.v[c] * sums.basis[i]) * s.multinomials[i];
       excess.v[c] += rhs[i].v[c];
     }
   }
@@ -198,29 +231,31 @@ void ElementTransfer::finish_components(const Solution& s, const Accumulators& s
 }
 
 void ElementTransfer::finish(const Group& g, std::int32_t t, const Accumulators& sums,
-                             std::span<const double> mass, double area, std::span<double> result,
-                             ElementOutcome& outcome) {
+                             std::span<const double> mass, std::span<const double> base,
+                             double area, std::span<double> result, ElementOutcome& outcome) {
   const int p = g.target_space->degree(ElementId(t));
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
   std::array<Lambda, 3> to_frame{};
-  bool other_frame = g.target_space->basis() == Basis::physical;
+  const bool other_frame = in_other_frame(g, t);
   if (other_frame) {
     const auto corners = g.target_space->frame(ElementId(t)).corners();
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k)
       to_frame[k] = g.target_frame[static_cast<std::size_t>(t)].lambda(corners[k]);
-    }
-    other_frame = !is_same_frame(to_frame, g.target_frame[static_cast<std::size_t>(t)]);
   }
-  const Solution solution{
-      factor(g, t), multinomials(p), other_frame ? &to_frame : nullptr,           p,
-      area,         own_area,        std::abs(area - own_area) <= 1e-9 * own_area};
+  const Solution solution{factor(g, t),
+                          multinomials(p),
+                          other_frame ? &to_frame : nullptr,
+                          p,
+                          area,
+                          own_area,
+                          std::abs(area - own_area) <= full_cover * own_area};
   constexpr std::size_t together = 8;
   for (std::size_t c = 0; c < mass.size();) {
     if (mass.size() - c > 2) {
-      finish_components<together>(solution, sums, mass, c, result, outcome);
+      finish_components<together>(solution, sums, mass, base, c, result, outcome);
       c += together;
     } else {
-      finish_components<1>(solution, sums, mass, c++, result, outcome);
+      finish_components<1>(solution, sums, mass, base, c++, result, outcome);
     }
   }
 }

@@ -34,22 +34,12 @@ struct Worker {
       : overlay(donor, target, search), element(donor, target, search, groups, policy) {}
   ElementOverlay overlay;
   ElementTransfer element;
-  std::vector<Segment> segments;  // of a chunk's elements
-  std::vector<std::size_t> segment_end;
+  OverlayList overlays;  // of a chunk's elements
 
-  void find_segments(std::span<const std::int32_t> elements, OverlayCounts& counts) {
+  void find_overlays(std::span<const std::int32_t> elements, OverlayCounts& counts) {
     overlay.begin_chunk();
-    segments.clear();
-    segment_end.clear();
-    for (const std::int32_t t : elements) {
-      const auto own = overlay.segments(t, counts);
-      segments.insert(segments.end(), own.begin(), own.end());
-      segment_end.push_back(segments.size());
-    }
-  }
-  std::span<const Segment> segments_of(std::size_t i) const {
-    const std::size_t begin = i == 0 ? 0 : segment_end[i - 1];
-    return std::span(segments).subspan(begin, segment_end[i] - begin);
+    overlays.clear();
+    for (const std::int32_t t : elements) overlay.add(t, overlays, counts);
   }
 };
 
@@ -117,14 +107,13 @@ std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayM
         const std::size_t begin = chunk * chunk_size,
                           end = std::min(elements.size(), (chunk + 1) * chunk_size);
         const auto t0 = clock::now();
-        worker->find_segments(elements.subspan(begin, end - begin), result.counts);
+        worker->find_overlays(elements.subspan(begin, end - begin), result.counts);
         const auto t1 = clock::now();
         for (std::size_t i = begin; i < end; ++i) {
           const std::int32_t t = elements[i];
           made_here.assign(components, 0.0);
-          const ElementOutcome outcome =
-              worker->element.process(t, worker->segments_of(i - begin), result.given, made_here,
-                                      visit ? &blocks : nullptr);
+          const ElementOutcome outcome = worker->element.process(
+              t, worker->overlays[i - begin], result.given, made_here, visit ? &blocks : nullptr);
           if (visit) visit(i, t, blocks);
           for (std::size_t c = 0; c < components; ++c) result.made[c] += made_here[c];
           if (options.conserve == Conserve::total &&
