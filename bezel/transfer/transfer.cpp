@@ -80,16 +80,6 @@ Plan make_plan(std::span<const Field> donors,
   return plan;
 }
 
-void check_bounds(const Bounds& bounds) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  if (bounds.kind != Bounds::Kind::global) return;
-  if (!(bounds.lo <= bounds.hi) || bounds.lo == infinity || bounds.hi == -infinity) {
-    throw InputError("transfer: found bounds " + fmt::format("{:.3g}", bounds.lo) + " to " +
-                     fmt::format("{:.3g}", bounds.hi) +
-                     ", expected two numbers in ascending order");
-  }
-}
-
 /// The coefficients of a group's fields, one field after the other.
 std::vector<std::vector<double>> part_fields(const detail::Group& g, std::span<const Field> donors,
                                              std::span<const std::size_t> members) {
@@ -117,7 +107,7 @@ void check_arguments(std::span<const Field> donors,
     throw InputError("transfer: degree " + std::to_string(options.degree) +
                      " is not supported, expected 0 to " + std::to_string(Space::max_degree));
   }
-  check_bounds(options.bounds);
+  detail::check_bounds(options.bounds);
   if (options.continuity == Continuity::continuous) {
     if (!options.same_basis && options.basis == Basis::physical) {
       throw InputError(
