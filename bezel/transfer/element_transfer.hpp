@@ -147,6 +147,12 @@ class ElementTransfer {
   /// The same for group i on a covered straight element, when it went by moments alone.
   bool finish_straight(std::size_t i, std::int32_t t, std::span<const double> mass, double area,
                        std::span<double> result, ElementOutcome& outcome);
+  struct Solution;
+  /// As finish(), for up to `width` components from number c0 on.
+  template <std::size_t width>
+  static void finish_components(const Solution& s, const Accumulators& sums,
+                                std::span<const double> mass, std::span<const double> base,
+                                std::size_t c0, std::span<double> result, ElementOutcome& outcome);
   const MassRule& mass_rule(int degree);
   static bool factorize(std::size_t n, Factor& factor);
   /// @param whole  moments of the element up to twice the degree, when known
