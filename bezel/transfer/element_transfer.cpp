@@ -34,8 +34,13 @@ ElementTransfer::ElementTransfer(const OverlayMesh& donor, const OverlayMesh& ta
       sums_(groups.size()),
       moment_sums_(groups.size()),
       have_moments_(groups.size()),
-      batched_(groups.size()) {
-  for (std::size_t i = 0; i < groups.size(); ++i) batched_[i] = can_batch(groups[i]) ? 1 : 0;
+      batched_(groups.size()),
+      fit_(donor, target, groups.size()),
+      fitted_(groups.size()) {
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    batched_[i] = can_batch(groups[i]) ? 1 : 0;
+    fitted_[i] = batched_[i] == 0 && PairFit::can(groups[i], donor, target) ? 1 : 0;
+  }
 }
 
 void ElementTransfer::Accumulators::reset(std::size_t functions, std::size_t components) {
@@ -374,6 +379,8 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
       begin_moments(i);
       add_batched(i, t, segments, region_mass_);
     }
+    const bool fitted = fitted_[i] != 0 && !segments.empty();
+    if (fitted) fit_.begin(i, g, t, segments, blocks == nullptr);
     double* to = given.mass.data() + first_given + c0;
     for (std::size_t k = 0; k < regions_.size(); ++k) {
       const auto run = segments.subspan(regions_[k].begin, regions_[k].end - regions_[k].begin);
@@ -391,12 +398,20 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
         add_extension(g, t, run, area, run_shape(run).centre, sums_[i], here);
         for (std::size_t c = 0; c < nc; ++c) made[c0 + c] += here[c];
       } else if (!batched) {
-        const RunShape shape = run_shape(run);
-        if (blocks == nullptr && by_moments(g, t, d)) {
-          begin_moments(i);
-          add_pair_moments(g, t, d, shape, moment_sums_[i], here);
+        if (fitted && fit_.add(d, regions_[k].begin, regions_[k].end, area, here)) {
+          if (blocks != nullptr) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
         } else {
-          add_pair(g, t, d, run, area, shape.centre, sums_[i], here);
+          const RunShape shape = run_shape(run);
+          if (blocks == nullptr && by_moments(g, t, d)) {
+            begin_moments(i);
+            add_pair_moments(g, t, d, shape, moment_sums_[i], here);
+          } else if (fitted) {
+            // The masses of all pairs by one rule: its errors cancel between neighbours.
+            fitted_mass_.assign(nc, 0.0);
+            add_pair(g, t, d, run, area, shape.centre, sums_[i], fitted_mass_);
+          } else {
+            add_pair(g, t, d, run, area, shape.centre, sums_[i], here);
+          }
         }
       }
       for (std::size_t c = 0; c < nc; ++c) masses_[c0 + c] += here[c];
@@ -405,6 +420,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
       to += components;
       if (blocks != nullptr) keep_pair(d, sums_[i], here, *blocks);
     }
+    if (fitted) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
     c0 += nc;
   }
   outcome.partition_residual = std::abs(total - own_area) / own_area;

@@ -16,6 +16,7 @@
 #include "bezel/transfer/mass_rule.hpp"
 #include "bezel/transfer/moments.hpp"
 #include "bezel/transfer/overlay.hpp"
+#include "bezel/transfer/pair_fit.hpp"
 #include "bezel/transfer/transfer.hpp"
 
 namespace bezel::detail {
@@ -183,6 +184,9 @@ class ElementTransfer {
   std::vector<Accumulators> sums_, moment_sums_;
   std::vector<std::uint8_t> have_moments_;  // by group: for this element
   std::vector<std::uint8_t> batched_;       // by group: goes by add_batched
+  PairFit fit_;
+  std::vector<std::uint8_t> fitted_;  // by group: goes by fit_
+  std::vector<double> fitted_mass_;
   std::vector<double> masses_;
   std::vector<double> scratch_;
   std::vector<MassRule> mass_rules_;
