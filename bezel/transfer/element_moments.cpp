@@ -63,6 +63,17 @@ Vec2 to_barycentric(const Frame& frame, const Vec2& x) {
   return {{dot(frame.gradient[1], x), dot(frame.gradient[2], x)}};
 }
 
+TargetPlace place_of(const Frame& frame) {
+  const Vec2 &first = frame.gradient[1], &second = frame.gradient[2];
+  const double area = 1.0 / cross(first, second);
+  return {frame.centre,
+          first,
+          second,
+          Vec2{{second[1] * area, -second[0] * area}},
+          Vec2{{-first[1] * area, first[0] * area}},
+          area};
+}
+
 }  // namespace
 
 ElementTransfer::RunShape ElementTransfer::run_shape(std::span<const Segment> run) {
@@ -111,8 +122,8 @@ const PieceTable& ElementTransfer::piece_table(int degree, int moments) {
 
 // In the target's barycentrics about the region's centre; piece_control_ holds the pieces about it.
 void ElementTransfer::add_pair_moments(const Group& g, std::int32_t t, std::int32_t d,
-                                       const RunShape& shape, Accumulators& sums,
-                                       std::span<double> mass) {
+                                       const RunShape& shape, const double* base,
+                                       Accumulators& sums, std::span<double> mass) {
   const int degree = g.target_space->degree(ElementId(t));
   const Frame& target = g.target_frame[static_cast<std::size_t>(t)];
   const Frame& donor = g.donor_frame[static_cast<std::size_t>(d)];
@@ -142,8 +153,8 @@ void ElementTransfer::add_pair_moments(const Group& g, std::int32_t t, std::int3
   place.in_target = {in_target[0], in_target[1]};
   place.in_donor = {in_donor[0], in_donor[1]};
   place.to_donor = {first[0], second[0], first[1], second[1]};
-  add_region(degree, place, moments_.data(), g.components, g.donor_powers(d), sums.product.data(),
-             sums.basis.data(), mass.data());
+  add_region(degree, place, moments_.data(), g.components, g.donor_powers(d), base,
+             sums.product.data(), sums.basis.data(), mass.data());
 }
 
 bool ElementTransfer::can_batch(const Group& g) {
@@ -153,39 +164,76 @@ bool ElementTransfer::can_batch(const Group& g) {
 }
 
 TargetPlace ElementTransfer::target_place(const Group& g, std::int32_t t) {
-  const Frame& frame = g.target_frame[static_cast<std::size_t>(t)];
-  const Vec2 &first = frame.gradient[1], &second = frame.gradient[2];
-  const double area = 1.0 / cross(first, second);
-  return {frame.centre,
-          first,
-          second,
-          Vec2{{second[1] * area, -second[0] * area}},
-          Vec2{{-first[1] * area, first[0] * area}},
-          area};
+  return place_of(g.target_frame[static_cast<std::size_t>(t)]);
 }
 
-void ElementTransfer::fill_batch(std::span<const Segment> segments) {
+void ElementTransfer::fill_batch(std::span<const BoundaryPiece> pieces) {
   const int degree = target_.degree;
-  const std::size_t points = static_cast<std::size_t>(degree) + 1, count = segments.size();
-  batch_.resize(count, degree, 2 * max_moment_degree);
+  const std::size_t points = static_cast<std::size_t>(degree) + 1, count = pieces.size();
+  batch_.resize(count, degree);
   const std::size_t stride = batch_.stride;
   const Vec2* const curves[2] = {target_.edge_control.data(), donor_.edge_control.data()};
   double *from = batch_.from.data(), *to = batch_.to.data();
   double *x = batch_.x.data(), *y = batch_.y.data();
   for (std::size_t i = 0; i < stride; ++i) {
     // The padding repeats the last piece.
-    const Segment& segment = segments[i < count ? i : count - 1];
-    const std::size_t source = segment.target.edge < 0 ? 1 : 0;
-    const Part* const parts[2] = {&segment.target, &segment.source};
-    const Part& part = *parts[source];
-    const Vec2* p = curves[source] + static_cast<std::size_t>(part.edge) * points;
-    from[i] = part.from;
-    to[i] = part.to;
+    const BoundaryPiece& piece = pieces[i < count ? i : count - 1];
+    const Vec2* p =
+        curves[piece.source ? 1 : 0] + static_cast<std::size_t>(piece.part.edge) * points;
+    from[i] = piece.part.from;
+    to[i] = piece.part.to;
     for (std::size_t k = 0; k < points; ++k) {
       x[k * stride + i] = p[k].x();
       y[k * stride + i] = p[k].y();
     }
   }
+}
+
+std::span<const Segment> ElementTransfer::all_runs(const ElementPieces& own) {
+  if (!have_segments_) {
+    have_segments_ = true;
+    collect_segments(own, segments_);
+    run_end_.clear();
+    std::size_t end = 0;
+    for (const std::int32_t d : own.donors) {
+      while (end < segments_.size() && segments_[end].donor == d) ++end;
+      run_end_.push_back(end);
+    }
+  }
+  return segments_;
+}
+
+bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, std::size_t first,
+                                    ElementOutcome& outcome) {
+  area_.clear();
+  const bool batch = donor_.degree == target_.degree && target_.degree <= max_batch_degree;
+  if (!batch) {
+    for (std::size_t k = 0; k < own.donors.size(); ++k) {
+      const RunShape shape = run_shape(run_of(own, k));
+      area_.push_back(shape.area);
+      note_region(t, own.donors[k], shape.area, shape.gap, outcome);
+    }
+    return false;
+  }
+  fill_batch(own.pieces);
+  // The areas have the same bits whatever is summed besides.
+  const bool fits = corners_fit(target_, t);
+  const bool summed = fits && first < groups_.size();
+  const int degree = summed ? 2 * groups_[first].target_space->uniform_degree() : 0;
+  const TargetPlace place =
+      summed ? target_place(groups_[first], t)
+      : fits ? place_of(affine_frame(target_.corners(t)))
+             : TargetPlace{origin_, Vec2{{1, 0}}, Vec2{{0, 1}}, Vec2{{1, 0}}, Vec2{{0, 1}}, 1.0};
+  region_sums(piece_table(target_.degree, degree), degree, place, own.pieces, own.donors.size(),
+              batch_);
+  const auto open = static_cast<std::size_t>(bernstein::triangle_size(degree));
+  for (std::size_t k = 0; k < own.donors.size(); ++k) {
+    const double* sums = batch_.region(k);
+    area_.push_back(sums[0] * place.area);
+    const double gap = norm(sums[open] * place.along_first + sums[open + 1] * place.along_second);
+    note_region(t, own.donors[k], area_.back(), gap, outcome);
+  }
+  return summed;
 }
 
 void ElementTransfer::note_region(std::int32_t t, std::int32_t d, double area, double gap,
@@ -201,33 +249,48 @@ void ElementTransfer::note_region(std::int32_t t, std::int32_t d, double area, d
     outcome.inconsistent = true;
 }
 
-void ElementTransfer::add_batched(std::size_t i, std::int32_t t, std::span<const Segment> segments,
-                                  std::span<double> mass) {
+void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPieces& own,
+                                  bool summed, std::span<double> mass) {
   const Group& g = groups_[i];
   const auto nc = static_cast<std::size_t>(g.components);
   const int degree = g.target_space->uniform_degree();
   const TargetPlace place = target_place(g, t);
-  piece_moments(piece_table(target_.degree, 2 * degree), 2 * degree, place, batch_);
-  for (BatchRegion& region : regions_) {
-    const std::int32_t d = segments[region.begin].donor;
-    region.far = false;
+  if (!summed) {
+    region_sums(piece_table(target_.degree, 2 * degree), 2 * degree, place, own.pieces,
+                own.donors.size(), batch_);
+  }
+  const auto size = static_cast<std::size_t>(bernstein::triangle_size(degree));
+  const double* some = nullptr;
+  regions_.clear();
+  for (const std::int32_t d : own.donors) {
+    BatchRegion& region = regions_.emplace_back();
     region.donor = nullptr;
     if (d == exterior) continue;
     region.frame = &g.donor_frame[static_cast<std::size_t>(d)];
     region.donor = g.donor_powers(d);
+    if (some == nullptr) some = region.donor;
   }
+  // Constants come back whatever the rounding of the moments when they are not integrated at all.
+  double* base = base_[i].data();
+  for (std::size_t c = 0; c < nc; ++c) base[c] = some != nullptr ? some[c * size] : 0.0;
   Accumulators& sums = moment_sums_[i];
-  add_batch(degree, place, batch_, regions_, g.components, sums.product.data(), sums.basis.data(),
-            mass.data());
+  add_batch(degree, place, batch_, regions_, g.components, base, sums.product.data(),
+            sums.basis.data(), mass.data());
   for (std::size_t k = 0; k < regions_.size(); ++k) {
     if (!regions_[k].far) continue;
-    const auto run = segments.subspan(regions_[k].begin, regions_[k].end - regions_[k].begin);
-    add_pair_moments(g, t, run.front().donor, run_shape(run), sums, mass.subspan(k * nc, nc));
+    add_pair_moments(g, t, own.donors[k], run_shape(run_of(own, k)), base, sums,
+                     mass.subspan(k * nc, nc));
   }
 }
 
-void ElementTransfer::moments_to_powers(const Group& g, std::int32_t t, const Accumulators& moments,
-                                        Accumulators& sums) {
+void ElementTransfer::moments_to_powers(std::size_t i, std::int32_t t) {
+  const Group& g = groups_[i];
+  const Accumulators& moments = moment_sums_[i];
+  Accumulators& sums = sums_[i];
+  const auto nc = static_cast<std::size_t>(g.components);
+  // What is there so far (parts that no donor covers) has the whole polynomials.
+  for (std::size_t n = 0; n < sums.basis.size(); ++n)
+    for (std::size_t c = 0; c < nc; ++c) sums.product[n * nc + c] -= base_[i][c] * sums.basis[n];
   const int degree = g.target_space->degree(ElementId(t));
   powers_from_moments(degree, 1, moments.basis.data(), sums.basis.data());
   powers_from_moments(degree, g.components, moments.product.data(), sums.product.data());

@@ -11,6 +11,9 @@ namespace bezel::detail {
 
 namespace {
 
+/// An element is covered when its overlaps add up to its area within this fraction.
+constexpr double full_cover = 1e-9;
+
 /// x := scale (L L^T)^-1 x. N: the size when known at compile time.
 template <std::size_t N>
 void solve_in_place(std::size_t size, const double* lower, const double* inverse, double scale,
@@ -31,14 +34,16 @@ void solve_in_place(std::size_t size, const double* lower, const double* inverse
 
 /// The target's polynomials may stay on the triangle they were computed on when the space's frame
 /// is that triangle, up to the rounding of barycentric coordinates at its place in the plane.
-bool is_same_frame(const std::array<Lambda, 3>& corners, const Frame& frame) {
+bool is_frame(const Frame& frame, const std::array<Vec2, 3>& corners) {
   double slope = 0.0;
   for (const Vec2& g : frame.gradient) slope = std::max({slope, std::abs(g[0]), std::abs(g[1])});
   const double reach = std::max(std::abs(frame.centre[0]), std::abs(frame.centre[1]));
   double largest = 0.0;
-  for (std::size_t k = 0; k < 3; ++k)
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Lambda l = frame.lambda(corners[k]);
     for (std::size_t i = 0; i < 3; ++i)
-      largest = std::max(largest, std::abs(corners[k][i] - (i == k ? 1.0 : 0.0)));
+      largest = std::max(largest, std::abs(l[i] - (i == k ? 1.0 : 0.0)));
+  }
   return largest <= 0x1p-51 * (2.0 + reach * slope);
 }
 
@@ -103,25 +108,49 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
   return f;
 }
 
+bool ElementTransfer::in_other_frame(const Group& g, std::int32_t t) const {
+  return g.target_space->basis() == Basis::physical &&
+         !(target_.degree == 1 &&
+           is_frame(g.target_space->frame(ElementId(t)), target_.corners(t)));
+}
+
+bool ElementTransfer::finish_straight(std::size_t i, std::int32_t t, std::span<const double> mass,
+                                      double area, std::span<double> result,
+                                      ElementOutcome& outcome) {
+  const Group& g = groups_[i];
+  const double own_area = target_.element_area[static_cast<std::size_t>(t)];
+  if (target_.degree != 1 || have_moments_[i] == 0 ||
+      std::abs(area - own_area) > full_cover * own_area)
+    return false;
+  for (const double m : sums_[i].basis)
+    if (m != 0.0) return false;  // extensions
+  if (in_other_frame(g, t)) return false;
+  const Accumulators& sums = moment_sums_[i];
+  const double defect =
+      solve_straight({g.target_space->degree(ElementId(t)), g.components, own_area, area,
+                      sums.product.data(), sums.basis.data(), mass.data(), base_[i].data()},
+                     result.data());
+  outcome.max_mass_defect = std::max(outcome.max_mass_defect, defect);
+  return true;
+}
+
 void ElementTransfer::finish(const Group& g, std::int32_t t, const Accumulators& sums,
-                             std::span<const double> mass, double area, std::span<double> result,
-                             ElementOutcome& outcome) {
+                             std::span<const double> mass, std::span<const double> base,
+                             double area, std::span<double> result, ElementOutcome& outcome) {
   const int p = g.target_space->degree(ElementId(t));
   const auto n = static_cast<std::size_t>(bernstein::triangle_size(p));
   const std::size_t nc = mass.size();
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
-  const bool full = std::abs(area - own_area) <= 1e-9 * own_area;
+  const bool full = std::abs(area - own_area) <= full_cover * own_area;
   const Factor& f = factor(g, t);
   const auto factors = multinomials(p);
   std::vector<double>& rhs = scratch_;
   std::array<Lambda, 3> to_frame{};  // the space's frame seen from the triangle computed on
-  bool other_frame = g.target_space->basis() == Basis::physical;
+  const bool other_frame = in_other_frame(g, t);
   if (other_frame) {
     const auto corners = g.target_space->frame(ElementId(t)).corners();
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k)
       to_frame[k] = g.target_frame[static_cast<std::size_t>(t)].lambda(corners[k]);
-    }
-    other_frame = !is_same_frame(to_frame, g.target_frame[static_cast<std::size_t>(t)]);
   }
   for (std::size_t c = 0; c < nc; ++c) {
     rhs.assign(n, 0.0);
@@ -130,7 +159,7 @@ void ElementTransfer::finish(const Group& g, std::int32_t t, const Accumulators&
     const double mean = full ? mass[c] / area : 0.0;
     double sum = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
-      rhs[i] = (sums.product[i * nc + c] - mean * sums.basis[i]) * factors[i];
+      rhs[i] = (sums.product[i * nc + c] - (mean - base[c]) * sums.basis[i]) * factors[i];
       sum += rhs[i];
     }
     const double excess = (mass[c] - mean * own_area) - sum;

@@ -4,6 +4,7 @@
 
 #include "bezel/transfer/accumulate.hpp"
 #include "bezel/transfer/moments.hpp"
+#include "bezel/transfer/piece_batch.hpp"
 
 namespace bezel::detail {
 namespace {
@@ -13,6 +14,13 @@ namespace {
 constexpr double fitting_corners = 0.5;
 
 }  // namespace
+
+bool corners_fit(const OverlayMesh& target, std::int32_t t) {
+  if (target.degree == 1) return true;
+  const auto corners = target.corners(t);
+  const double corner_area = 0.5 * cross(corners[1] - corners[0], corners[2] - corners[0]);
+  return corner_area >= fitting_corners * target.element_area[static_cast<std::size_t>(t)];
+}
 
 Frame affine_frame(const std::array<Vec2, 3>& p) {
   Frame frame;
@@ -58,7 +66,7 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
   }
   out.resize(target_space->coefficient_count() * nc);
   if (donor_mapped || target_mapped) return;
-  powers.assign(scaled.size(), 0.0);
+  powers.assign(scaled.size() + donor_padding, 0.0);
   for (std::size_t e = 0; e < elements; ++e) {
     const int degree = donor_space->degree(ElementId(e));
     if (degree > max_moment_degree) continue;
@@ -69,7 +77,7 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
     for (std::size_t c = 0; c < nc; ++c) {
       for (std::size_t n = 0; n < size; ++n) {
         const double value = from[c * size + n];
-        for (std::size_t m = 0; m < size; ++m) to[m * nc + c] += value * matrix[n * size + m];
+        for (std::size_t m = 0; m < size; ++m) to[c * size + m] += value * matrix[n * size + m];
       }
     }
   }
@@ -137,11 +145,9 @@ void Group::make_frames(const OverlayMesh& donor, const OverlayMesh& target) {
   if (!target_mapped) {
     target_frame.resize(target.element_count());
     for (std::size_t e = 0; e < target_frame.size(); ++e) {
-      const auto corners = target.corners(static_cast<std::int32_t>(e));
-      const double corner_area = 0.5 * cross(corners[1] - corners[0], corners[2] - corners[0]);
-      const bool fits = corner_area >= fitting_corners * target.element_area[e];
-      target_frame[e] = target_space->basis() == Basis::reference || fits
-                            ? affine_frame(corners)
+      const auto t = static_cast<std::int32_t>(e);
+      target_frame[e] = target_space->basis() == Basis::reference || corners_fit(target, t)
+                            ? affine_frame(target.corners(t))
                             : target_space->frame(ElementId(e));
     }
   }

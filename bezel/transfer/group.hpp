@@ -15,6 +15,10 @@ namespace bezel::detail {
 /// The triangle itself as a frame: lambda_k are its barycentrics.
 Frame affine_frame(const std::array<Vec2, 3>& corners);
 
+/// Whether the triangle of an element's corners is nearly the element: polynomials are then
+/// computed on it.
+bool corners_fit(const OverlayMesh& target, std::int32_t t);
+
 /// The components of all donor fields that share a donor space and go to the same target space.
 struct Group {
   Group(const OverlayMesh& donor, const OverlayMesh& target, std::span<const Field* const> fields,
@@ -38,7 +42,7 @@ struct Group {
   std::vector<double> scaled;      ///< donor coefficients times multinomials, per element
                                    ///< [component][n]; of basis functions per degree
   std::vector<double> donor_mass;  ///< per element [component]
-  /// Coefficients of the monomials in the barycentrics less 1/3, per element [n][component]: of
+  /// Coefficients of the monomials in the barycentrics less 1/3, per element [component][n]: of
   /// donors that are not mapped and have at most max_moment_degree.
   std::vector<double> powers;
   std::vector<double> out;  ///< target coefficients, per element [n][component]

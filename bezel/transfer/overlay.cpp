@@ -30,6 +30,7 @@ ElementOverlay::ElementOverlay(const OverlayMesh& donor, const OverlayMesh& targ
       record_place_(target.edge_box.size()),
       vertex_place_(target.mesh->node_count()),
       walk_stamp_(donor.edge_box.size(), 0),
+      first_mark_(donor.edge_box.size(), -1),
       inside_stamp_(donor.mesh->node_count(), 0),
       edge_stamp_(donor.edge_box.size(), 0),
       group_(donor.element_count() + 1) {}
@@ -165,6 +166,7 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
       ++record.unresolved;
     }
   }
+  record.gap /= std::max(own.diameter, 1e-300);
   record.contact_end = static_cast<std::uint32_t>(contacts_.size());
   record.coincidence_end = static_cast<std::uint32_t>(coincidences_.size());
   const auto contacts = std::span(contacts_).subspan(record.contact_begin);
@@ -244,12 +246,12 @@ void ElementOverlay::donor_edges_inside(std::int32_t t) {
       const bool inner = is_inner(c.r) && is_inner(c.s);
       std::int8_t direction = inner ? c.sign : std::int8_t{0};
       if (side.reversed) direction = static_cast<std::int8_t>(-direction);
-      marks_.push_back({c.donor_edge, c.s, direction});
+      marks_.push_back({c.donor_edge, c.s, direction, -1});
     }
     for (std::uint32_t i = record.coincidence_begin; i < record.coincidence_end; ++i) {
       const Coincidence& c = coincidences_[i];
-      marks_.push_back({c.donor_edge, c.s0, 0});
-      marks_.push_back({c.donor_edge, c.s1, 0});
+      marks_.push_back({c.donor_edge, c.s0, 0, -1});
+      marks_.push_back({c.donor_edge, c.s1, 0, -1});
       covered_.push_back({c.donor_edge, {std::min(c.s0, c.s1), std::max(c.s0, c.s1)}});
     }
   }
@@ -321,7 +323,7 @@ const ElementOverlay::Record& ElementOverlay::record_of(std::int32_t t, std::int
   if (place.chunk != chunk_) {
     place = {chunk_, static_cast<std::int32_t>(records_.size())};
     Record& record = records_.emplace_back();
-    if (!walk_edge(edge, record)) {
+    if (!walk_straight_edge(edge, record) && !walk_edge(edge, record)) {
       find_candidates(t);
       overlay_edge(edge, record);
     }
@@ -329,8 +331,7 @@ const ElementOverlay::Record& ElementOverlay::record_of(std::int32_t t, std::int
   return records_[static_cast<std::size_t>(place.at)];
 }
 
-std::span<const Segment> ElementOverlay::segments(std::int32_t t, OverlayCounts& counts) {
-  segments_.clear();
+void ElementOverlay::add(std::int32_t t, OverlayList& list, OverlayCounts& counts) {
   bool walked = true;
   for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
     const Record& record = record_of(t, side.edge.value);
@@ -342,8 +343,20 @@ std::span<const Segment> ElementOverlay::segments(std::int32_t t, OverlayCounts&
       counts.overlaps += record.overlaps;
       counts.unresolved += record.unresolved;
     }
-    const double smaller = std::max(target_.edge_cache[side.edge.index()].diameter, 1e-300);
-    counts.max_joint_gap = std::max(counts.max_joint_gap, record.gap / smaller);
+    counts.max_joint_gap = std::max(counts.max_joint_gap, record.gap);
+  }
+  if (!(walked && walk_inside(t, list))) {
+    find_candidates(t);
+    find_segments(t);
+    group_segments(list);
+  }
+  list.close();
+}
+
+void ElementOverlay::find_segments(std::int32_t t) {
+  segments_.clear();
+  for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
+    const Record& record = known_record(side.edge);
     for (std::uint32_t i = record.piece_begin; i < record.piece_end; ++i) {
       const Piece& piece = pieces_[i];
       Segment segment;
@@ -373,12 +386,27 @@ std::span<const Segment> ElementOverlay::segments(std::int32_t t, OverlayCounts&
       segments_.push_back(segment);
     }
   }
-  if (!(walked && walk_inside(t))) {
-    find_candidates(t);
-    donor_edges_inside(t);
+  donor_edges_inside(t);
+}
+
+void collect_segments(const ElementPieces& own, std::vector<Segment>& out) {
+  out.clear();
+  if (!own.segments.empty()) {
+    out.assign(own.segments.begin(), own.segments.end());
+    return;
   }
-  group_segments();
-  return grouped_;
+  for (std::size_t region = 0; region < own.donors.size(); ++region) {
+    const auto number = static_cast<std::int32_t>(region);
+    for (const BoundaryPiece& piece : own.pieces) {
+      if (piece.left != number && piece.right != number) continue;
+      Part part = piece.part;
+      if (piece.left != number) std::swap(part.from, part.to);
+      Segment segment;
+      segment.donor = own.donors[region];
+      (piece.source ? segment.source : segment.target) = part;
+      out.push_back(segment);
+    }
+  }
 }
 
 }  // namespace bezel::detail

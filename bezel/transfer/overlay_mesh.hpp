@@ -12,6 +12,7 @@
 #include "bezel/geometry/curve.hpp"
 #include "bezel/mesh/bvh.hpp"
 #include "bezel/mesh/mesh.hpp"
+#include "bezel/transfer/straight_elements.hpp"
 
 namespace bezel::detail {
 
@@ -81,6 +82,9 @@ class FrontSearch {
   /// an edge to tell. The answer does not depend on the start of the walk.
   std::int32_t containing(const Vec2& p, std::int32_t start, Memory& memory) const;
 
+  /// The elements of a straight mesh; else empty.
+  const std::vector<StraightElement>& straight() const { return straight_; }
+
   /// Whether every vertex can be reached from every other along edges.
   bool connected() const { return connected_; }
   /// The edges that end in a vertex (a node number).
@@ -96,6 +100,7 @@ class FrontSearch {
   Bvh tree_;
   std::vector<std::uint32_t> vertex_offset_;
   std::vector<std::int32_t> vertex_edges_;
+  std::vector<StraightElement> straight_;
   bool connected_ = false;
 };
 

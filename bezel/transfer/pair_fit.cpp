@@ -246,9 +246,9 @@ void PairFit::make_target_points(std::span<const Segment> segments) {
 }
 
 // The boundary of a region, counter-clockwise.
-void PairFit::collect(std::uint32_t begin, std::uint32_t end) {
+void PairFit::collect(std::size_t begin, std::size_t end) {
   boundary_.clear();
-  for (std::uint32_t i = begin; i < end; ++i) {
+  for (std::size_t i = begin; i < end; ++i) {
     const Run& run = runs_[i];
     const CurvePoints& from = run.pulled ? pulled_ : own_;
     const std::size_t first = boundary_.append(run.count);
@@ -336,7 +336,7 @@ bool PairFit::place_points(std::int32_t d, int m, int p, const FitFrame& frame) 
   return tails[0] <= largest[0] && tails[1] <= largest[1];
 }
 
-bool PairFit::add(std::int32_t d, std::uint32_t begin, std::uint32_t end, double area,
+bool PairFit::add(std::int32_t d, std::size_t begin, std::size_t end, double area,
                   std::span<double> mass) {
   const Donor& donor = donor_of(d);
   const int pd = g_->donor_space->degree(ElementId(d));
@@ -379,11 +379,11 @@ bool PairFit::add(std::int32_t d, std::uint32_t begin, std::uint32_t end, double
 
 // By a rule whose parts cancel between neighbouring target elements: along the donor's own sides
 // exact, along a target edge with nodes that both elements beside it have.
-void PairFit::donor_mass(const Donor& donor, std::uint32_t begin, std::uint32_t end, double area,
+void PairFit::donor_mass(const Donor& donor, std::size_t begin, std::size_t end, double area,
                          std::span<double> mass) {
   const int degree = mass_degree(donor_, g_->donor_space->degree(ElementId(donor.element)));
   boundary_.clear();
-  for (std::uint32_t i = begin; i < end; ++i) {
+  for (std::size_t i = begin; i < end; ++i) {
     const Segment& segment = segments_[i];
     if (segment.source.edge >= 0) {
       append_side(donor_, donor.element, segment.source, degree / 2 + 1, boundary_);
@@ -430,12 +430,12 @@ void PairFit::pull_one_by_one(std::int32_t d, const Part& part, std::size_t firs
 }
 
 // Exactly, in the plane.
-void PairFit::plane_mass(std::int32_t d, std::uint32_t begin, std::uint32_t end,
+void PairFit::plane_mass(std::int32_t d, std::size_t begin, std::size_t end,
                          std::span<double> mass) {
   const int pd = g_->donor_space->degree(ElementId(d));
   const Vec2 origin = target_map_.base;
   boundary_.clear();
-  for (std::uint32_t i = begin; i < end; ++i) {
+  for (std::size_t i = begin; i < end; ++i) {
     const Segment& segment = segments_[i];
     const bool source = segment.target.edge < 0;
     const OverlayMesh& mesh = source ? donor_ : target_;

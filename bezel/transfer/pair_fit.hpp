@@ -30,8 +30,7 @@ class PairFit {
   /// where the maps are too far from affine for it.
   /// @param area  of the pair
   /// @param mass  out, [component]; where one of the fields is mapped also when the answer is false
-  bool add(std::int32_t d, std::uint32_t begin, std::uint32_t end, double area,
-           std::span<double> mass);
+  bool add(std::int32_t d, std::size_t begin, std::size_t end, double area, std::span<double> mass);
   /// Adds what the pairs since the last call gave: integrals with the powers l0^i l1^j l2^k of the
   /// target's barycentrics, product[n * components + c] and basis[n].
   void take(double* product, double* basis);
@@ -65,13 +64,13 @@ class PairFit {
                    CurvePoints& to);
   std::size_t append_curve(std::span<const Vec2> control, const Part& part, const Vec2& origin,
                            int points, CurvePoints& to);
-  void collect(std::uint32_t begin, std::uint32_t end);
+  void collect(std::size_t begin, std::size_t end);
   bool donor_places(std::int32_t d, std::size_t padded);
   bool place_points(std::int32_t d, int m, int p, const FitFrame& frame);
-  void donor_mass(const Donor& donor, std::uint32_t begin, std::uint32_t end, double area,
+  void donor_mass(const Donor& donor, std::size_t begin, std::size_t end, double area,
                   std::span<double> mass);
   void pull_one_by_one(std::int32_t d, const Part& part, std::size_t first, std::size_t count);
-  void plane_mass(std::int32_t d, std::uint32_t begin, std::uint32_t end, std::span<double> mass);
+  void plane_mass(std::int32_t d, std::size_t begin, std::size_t end, std::span<double> mass);
 
   const OverlayMesh& donor_;
   const OverlayMesh& target_;

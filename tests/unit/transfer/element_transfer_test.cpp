@@ -31,8 +31,9 @@ TEST(ElementTransfer, WithoutFieldsItMeasuresAreas) {
   for (std::size_t t = 0; t < pair.target.element_count(); ++t) {
     GivenList given;
     const auto id = static_cast<std::int32_t>(t);
-    const ElementOutcome outcome =
-        element.process(id, pair.overlay.segments(id, pair.counts), given, {});
+    OverlayList list;
+    pair.overlay.add(id, list, pair.counts);
+    const ElementOutcome outcome = element.process(id, list[0], given, {});
     EXPECT_FALSE(outcome.inconsistent);
     EXPECT_EQ(outcome.pairs, static_cast<std::int32_t>(given.donor.size()));
     EXPECT_NEAR(std::accumulate(given.area.begin(), given.area.end(), 0.0),
@@ -45,13 +46,15 @@ TEST(ElementTransfer, APieceThatIsMissingIsNoticed) {
   Pair pair(test::grid_mesh(4, 2, 1.0, test::bend(0.15, 0.1)),
             test::grid_mesh(3, 2, 0.7, test::bend(0.1, 0.1)));
   ElementTransfer element(pair.donor, pair.target, pair.search, {}, Uncovered::error);
-  const auto segments = pair.overlay.segments(4, pair.counts);
-  ASSERT_GT(segments.size(), 4U);
-  for (std::size_t left_out = 0; left_out < segments.size(); ++left_out) {
-    std::vector<Segment> broken(segments.begin(), segments.end());
+  OverlayList list;
+  pair.overlay.add(4, list, pair.counts);
+  ASSERT_GT(list.pieces.size(), 4U);
+  for (std::size_t left_out = 0; left_out < list.pieces.size(); ++left_out) {
+    std::vector<BoundaryPiece> broken = list.pieces;
     broken.erase(broken.begin() + static_cast<std::ptrdiff_t>(left_out));
     GivenList given;
-    EXPECT_TRUE(element.process(4, broken, given, {}).inconsistent) << "without piece " << left_out;
+    EXPECT_TRUE(element.process(4, {list.donors, broken, {}}, given, {}).inconsistent)
+        << "without piece " << left_out;
   }
 }
 
@@ -59,15 +62,13 @@ TEST(ElementTransfer, APieceGivenToTheWrongElementIsNoticed) {
   Pair pair(test::grid_mesh(4, 2, 1.0, test::bend(0.15, 0.1)),
             test::grid_mesh(3, 2, 0.7, test::bend(0.1, 0.1)));
   ElementTransfer element(pair.donor, pair.target, pair.search, {}, Uncovered::error);
-  const auto segments = pair.overlay.segments(4, pair.counts);
-  std::vector<Segment> broken(segments.begin(), segments.end());
-  std::size_t moved = 0;
-  while (broken[moved].donor == broken.back().donor) ++moved;
-  broken[moved].donor = broken.back().donor;
-  std::stable_sort(broken.begin(), broken.end(),
-                   [](const Segment& a, const Segment& b) { return a.donor < b.donor; });
+  OverlayList list;
+  pair.overlay.add(4, list, pair.counts);
+  ASSERT_GT(list.donors.size(), 1U);
+  std::vector<BoundaryPiece> broken = list.pieces;
+  broken[0].left = broken[0].left == 0 ? 1 : 0;
   GivenList given;
-  const ElementOutcome outcome = element.process(4, broken, given, {});
+  const ElementOutcome outcome = element.process(4, {list.donors, broken, {}}, given, {});
   EXPECT_TRUE(outcome.inconsistent);
   EXPECT_GT(outcome.max_joint_gap, 1e-3);
 }
