@@ -198,7 +198,7 @@ void ElementTransfer::fill_batch(std::span<const BoundaryPiece> pieces) {
   return fill_curves<4>(pieces);
 }
 
-std::span<const Segment> ElementTransfer::run_of(const ElementPieces& own, std::size_t k) {
+std::span<const Segment> ElementTransfer::all_runs(const ElementPieces& own) {
   if (!have_segments_) {
     have_segments_ = true;
     collect_segments(own, segments_);
@@ -209,8 +209,7 @@ std::span<const Segment> ElementTransfer::run_of(const ElementPieces& own, std::
       run_end_.push_back(end);
     }
   }
-  const std::size_t begin = k == 0 ? 0 : run_end_[k - 1];
-  return std::span<const Segment>(segments_).subspan(begin, run_end_[k] - begin);
+  return segments_;
 }
 
 bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, std::size_t first,

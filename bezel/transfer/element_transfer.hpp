@@ -16,6 +16,7 @@
 #include "bezel/transfer/mass_rule.hpp"
 #include "bezel/transfer/moments.hpp"
 #include "bezel/transfer/overlay.hpp"
+#include "bezel/transfer/pair_fit.hpp"
 #include "bezel/transfer/piece_batch.hpp"
 #include "bezel/transfer/transfer.hpp"
 
@@ -117,8 +118,14 @@ class ElementTransfer {
   /// Group i on all regions, their sums already in the batch when `summed`.
   void add_batched(std::size_t i, std::int32_t t, const ElementPieces& own, bool summed,
                    std::span<double> mass);
+  /// The segments around all regions, one region after the other.
+  std::span<const Segment> all_runs(const ElementPieces& own);
   /// The segments around region k.
-  std::span<const Segment> run_of(const ElementPieces& own, std::size_t k);
+  std::span<const Segment> run_of(const ElementPieces& own, std::size_t k) {
+    const auto all = all_runs(own);
+    return all.subspan(run_begin(k), run_end_[k] - run_begin(k));
+  }
+  std::size_t run_begin(std::size_t k) const { return k == 0 ? 0 : run_end_[k - 1]; }
   void note_region(std::int32_t t, std::int32_t d, double area, double gap,
                    ElementOutcome& outcome) const;
   void flush(const Group& g, std::int32_t d, int target_degree, Accumulators& sums);
@@ -222,6 +229,9 @@ class ElementTransfer {
   std::vector<std::uint8_t> have_moments_;  // by group: for this element
   std::vector<std::uint8_t> extended_;      // by group: into what no donor covers of this element
   std::vector<std::uint8_t> batched_;       // by group: goes by add_batched
+  PairFit fit_;
+  std::vector<std::uint8_t> fitted_;  // by group: goes by fit_
+  std::vector<double> fitted_mass_;
   std::vector<double> masses_;
   std::vector<double> scratch_;
   std::vector<MassRule> mass_rules_;
