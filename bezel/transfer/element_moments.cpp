@@ -304,10 +304,6 @@ void ElementTransfer::moments_to_powers(std::size_t i, std::int32_t t) {
   const Group& g = groups_[i];
   const Accumulators& moments = moment_sums_[i];
   Accumulators& sums = sums_[i];
-  const auto nc = static_cast<std::size_t>(g.components);
-  // What is there so far (parts that no donor covers) has the whole polynomials.
-  for (std::size_t n = 0; n < sums.basis.size(); ++n)
-    for (std::size_t c = 0; c < nc; ++c) sums.product[n * nc + c] -= base_[i][c] * sums.basis[n];
   const int degree = g.target_space->degree(ElementId(t));
   powers_from_moments(degree, 1, moments.basis.data(), sums.basis.data());
   powers_from_moments(degree, g.components, moments.product.data(), sums.product.data());

@@ -315,6 +315,22 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
     mass[c] = total.mass[c] + donor_mass[c] / donor_area * (area - weight);
 }
 
+std::span<const std::array<Vec2, 2>> ElementTransfer::plane_bridges() {
+  plane_bridges_.clear();
+  for (const Bridge& bridge : bridges_)
+    plane_bridges_.push_back({origin_ + bridge.from, bridge.step});
+  return plane_bridges_;
+}
+
+// What is in the sums so far has the whole polynomials.
+void ElementTransfer::subtract_base(std::size_t i) {
+  const std::vector<double>& base = base_[i];
+  Accumulators& sums = sums_[i];
+  for (std::size_t n = 0; n < sums.basis.size(); ++n)
+    for (std::size_t c = 0; c < base.size(); ++c)
+      sums.product[n * base.size() + c] -= base[c] * sums.basis[n];
+}
+
 void ElementTransfer::begin_moments(std::size_t i) {
   if (have_moments_[i] != 0) return;
   have_moments_[i] = 1;
@@ -390,7 +406,13 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
       add_batched(i, t, own, summed && i == first_batched, region_mass_);
     }
     const bool fitted = fitted_[i] != 0 && !own.donors.empty();
-    if (fitted) fit_.begin(i, g, t, all_runs(own), blocks == nullptr);
+    // Open joints are bridged by the other rules; masses of mapped donors are all by one rule, for
+    // its errors cancel between neighbours.
+    const bool fits = fitted && !loose_;
+    if (fitted) {
+      fit_.begin(i, g, t, all_runs(own), blocks == nullptr);
+      base_[i].assign(fit_.constants().begin(), fit_.constants().end());
+    }
     double* to = given.mass.data() + first_given * components + c0;
     for (std::size_t k = 0; k < own.donors.size(); ++k) {
       const std::int32_t d = own.donors[k];
@@ -409,7 +431,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
         add_extension(g, t, run, area, run_shape(run).centre, sums_[i], here);
         for (std::size_t c = 0; c < nc; ++c) made[c0 + c] += here[c];
       } else if (!batched) {
-        if (fitted && fit_.add(d, run_begin(k), run_end_[k], area, here)) {
+        if (fits && fit_.add(d, run_begin(k), run_end_[k], area, here)) {
           if (blocks != nullptr) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
         } else {
           const auto run = run_of(own, k);
@@ -417,10 +439,10 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
           if (blocks == nullptr && by_moments(g, t, d)) {
             begin_moments(i);
             add_pair_moments(g, t, d, shape, base_[i].data(), moment_sums_[i], here);
-          } else if (fitted) {
-            // The masses of all pairs by one rule: its errors cancel between neighbours.
+          } else if (fits || (fitted && g.donor_mapped)) {
             fitted_mass_.assign(nc, 0.0);
             add_pair(g, t, d, run, area, shape.centre, sums_[i], fitted_mass_);
+            if (loose_) fit_.mass_of(d, run_begin(k), run_end_[k], area, plane_bridges(), here);
           } else {
             add_pair(g, t, d, run, area, shape.centre, sums_[i], here);
           }
@@ -432,7 +454,8 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
       to += components;
       if (blocks != nullptr) keep_pair(d, sums_[i], here, *blocks);
     }
-    if (fitted) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
+    if (blocks == nullptr) subtract_base(i);
+    if (fits) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
     c0 += nc;
   }
   if (loose_ && blocks == nullptr && components > 0) give_strips(t, own, components, given, made);

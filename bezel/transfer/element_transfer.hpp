@@ -94,6 +94,8 @@ class ElementTransfer {
   /// Also fills piece_control_ and bridges_.
   RunShape run_shape(std::span<const Segment> run);
   double bridge_joints();
+  /// Starts and steps of bridges_ in the plane.
+  std::span<const std::array<Vec2, 2>> plane_bridges();
   void give_strips(std::int32_t t, const ElementPieces& own, std::size_t components,
                    GivenList& given, std::span<double> made);
   double largest_partition_residual(std::int32_t t) const;
@@ -109,6 +111,7 @@ class ElementTransfer {
   static bool can_batch(const Group& g);
   static TargetPlace target_place(const Group& g, std::int32_t t);
   void begin_moments(std::size_t group);
+  void subtract_base(std::size_t group);
   void fill_batch(std::span<const BoundaryPiece> pieces);
   template <std::size_t points>
   void fill_curves(std::span<const BoundaryPiece> pieces);
@@ -202,6 +205,7 @@ class ElementTransfer {
     Vec2 from, step;
   };
   std::vector<Bridge> bridges_;
+  std::vector<std::array<Vec2, 2>> plane_bridges_;
   std::vector<Vec2> piece_starts_, piece_ends_;
   bool loose_ = false;  // this element's joints may be open a little
   std::vector<MomentPiece> moment_pieces_;

@@ -80,7 +80,7 @@ PairFit::PairFit(const OverlayMesh& donor, const OverlayMesh& target, std::size_
     : donor_(donor), target_(target), donors_(groups) {}
 
 bool PairFit::can(const Group& g, const OverlayMesh& donor, const OverlayMesh& target) {
-  const int pd = g.donor_space->highest_degree();
+  const int pd = g.donor_degree.highest;
   const int pt = g.target_space->highest_degree();
   if (!g.donor_mapped && !g.target_mapped && std::max(pd, pt) > max_plane_degree) return false;
   const int k = target_degree(g, target, pt);
@@ -190,7 +190,7 @@ void PairFit::make_target_points(std::span<const Segment> segments) {
   runs_.resize(segments.size());
   if (seen_.size() < donor_.edge_box.size()) seen_.resize(donor_.edge_box.size());
   ++stamp_;
-  const int degree = target_degree_ + fit_degree(*g_, target_, g_->donor_space->highest_degree());
+  const int degree = target_degree_ + fit_degree(*g_, target_, g_->donor_degree.highest);
   const bool mapped = g_->target_mapped;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const Segment& segment = segments[i];
@@ -341,7 +341,7 @@ bool PairFit::add(std::int32_t d, std::size_t begin, std::size_t end, double are
   const Donor& donor = donor_of(d);
   const int pd = g_->donor_space->degree(ElementId(d));
   if (g_->donor_mapped)
-    donor_mass(donor, begin, end, area, mass);
+    donor_mass(donor, begin, end, area, {}, mass);
   else if (g_->target_mapped)
     plane_mass(d, begin, end, mass);
   if (!ready_) return false;
@@ -377,10 +377,15 @@ bool PairFit::add(std::int32_t d, std::size_t begin, std::size_t end, double are
   return true;
 }
 
+void PairFit::mass_of(std::int32_t d, std::size_t begin, std::size_t end, double area,
+                      std::span<const std::array<Vec2, 2>> bridges, std::span<double> mass) {
+  donor_mass(donor_of(d), begin, end, area, bridges, mass);
+}
+
 // By a rule whose parts cancel between neighbouring target elements: along the donor's own sides
 // exact, along a target edge with nodes that both elements beside it have.
 void PairFit::donor_mass(const Donor& donor, std::size_t begin, std::size_t end, double area,
-                         std::span<double> mass) {
+                         std::span<const std::array<Vec2, 2>> bridges, std::span<double> mass) {
   const int degree = mass_degree(donor_, g_->donor_space->degree(ElementId(donor.element)));
   boundary_.clear();
   for (std::size_t i = begin; i < end; ++i) {
@@ -399,6 +404,13 @@ void PairFit::donor_mass(const Donor& donor, std::size_t begin, std::size_t end,
                     boundary_.dx.data() + first, boundary_.dy.data() + first) ||
         !inside(boundary_, first, count))
       pull_one_by_one(donor.element, segment.target, first, count);
+  }
+  for (const auto& [from, step] : bridges) {
+    std::array<double, 3> lambda{};
+    if (!invert_map(donor_.degree, donor_.element(donor.element), from + 0.5 * step, lambda, false))
+      continue;
+    const std::size_t at = boundary_.append(1);
+    pull_point(donor.element, lambda, step, at);
   }
   pad(boundary_);
   const FitFrame frame{{1.0 / 3.0, 1.0 / 3.0}, {reference_half, reference_half}};
@@ -419,14 +431,19 @@ void PairFit::pull_one_by_one(std::int32_t d, const Part& part, std::size_t firs
   for (std::size_t i = 0; i < count; ++i) {
     const auto at = edge_point(target_.edge(part.edge), part.from + step * line.node[i]);
     warm = invert_map(donor_.degree, donor_.element(d), at.value, lambda, warm);
-    const auto map = bernstein::kernel::evaluate_gradient_unchecked<Vec2, double>(
-        donor_.degree, donor_.element(d).data(), lambda);
-    const double scale = step * line.weight[i] / cross(map.du, map.dv);
-    boundary_.x[first + i] = lambda[1];
-    boundary_.y[first + i] = lambda[2];
-    boundary_.dx[first + i] = cross(at.derivative, map.dv) * scale;
-    boundary_.dy[first + i] = cross(map.du, at.derivative) * scale;
+    pull_point(d, lambda, at.derivative * (step * line.weight[i]), first + i);
   }
+}
+
+void PairFit::pull_point(std::int32_t d, const std::array<double, 3>& lambda, const Vec2& step,
+                         std::size_t at) {
+  const auto map = bernstein::kernel::evaluate_gradient_unchecked<Vec2, double>(
+      donor_.degree, donor_.element(d).data(), lambda);
+  const double scale = 1.0 / cross(map.du, map.dv);
+  boundary_.x[at] = lambda[1];
+  boundary_.y[at] = lambda[2];
+  boundary_.dx[at] = cross(step, map.dv) * scale;
+  boundary_.dy[at] = cross(map.du, step) * scale;
 }
 
 // Exactly, in the plane.
@@ -529,7 +546,7 @@ void PairFit::take(double* product, double* basis) {
         powers[n] = sum;
         basis[n] += sum;
       } else {
-        product[n * nc + c] += constant_[c] * powers[n] + sum;
+        product[n * nc + c] += sum;
       }
     }
   }

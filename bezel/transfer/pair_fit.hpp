@@ -31,8 +31,15 @@ class PairFit {
   /// @param area  of the pair
   /// @param mass  out, [component]; where one of the fields is mapped also when the answer is false
   bool add(std::int32_t d, std::size_t begin, std::size_t end, double area, std::span<double> mass);
+  /// [component] what is taken off the donors' polynomials.
+  std::span<const double> constants() const { return constant_; }
+  /// The mass alone, of a mapped donor, with straight pieces that close the region's joints: their
+  /// starts and steps in the plane.
+  void mass_of(std::int32_t d, std::size_t begin, std::size_t end, double area,
+               std::span<const std::array<Vec2, 2>> bridges, std::span<double> mass);
   /// Adds what the pairs since the last call gave: integrals with the powers l0^i l1^j l2^k of the
-  /// target's barycentrics, product[n * components + c] and basis[n].
+  /// target's barycentrics, product[n * components + c] of the fields less the constants, and
+  /// basis[n].
   void take(double* product, double* basis);
 
  private:
@@ -68,7 +75,10 @@ class PairFit {
   bool donor_places(std::int32_t d, std::size_t padded);
   bool place_points(std::int32_t d, int m, int p, const FitFrame& frame);
   void donor_mass(const Donor& donor, std::size_t begin, std::size_t end, double area,
-                  std::span<double> mass);
+                  std::span<const std::array<Vec2, 2>> bridges, std::span<double> mass);
+  /// Sets a point of boundary_ in the donor's reference triangle.
+  void pull_point(std::int32_t d, const std::array<double, 3>& lambda, const Vec2& step,
+                  std::size_t at);
   void pull_one_by_one(std::int32_t d, const Part& part, std::size_t first, std::size_t count);
   void plane_mass(std::int32_t d, std::size_t begin, std::size_t end, std::span<double> mass);
 
