@@ -39,9 +39,10 @@ struct Group {
   /// corners where it fits the element (mass matrices are well conditioned there), else the space's
   /// own frame.
   std::vector<Frame> target_frame;
-  std::vector<double> scaled;      ///< donor coefficients times multinomials, per element
-                                   ///< [component][n]; of basis functions per degree
-  std::vector<double> donor_mass;  ///< per element [component]
+  std::vector<double> scaled;           ///< donor coefficients times multinomials, per element
+                                        ///< [component][n]; of basis functions per degree
+  std::vector<double> donor_integrals;  ///< of the donor's basis functions; not of basis groups
+  std::vector<double> donor_mass;       ///< per element [component]
   /// Coefficients of the monomials in the barycentrics less 1/3, per element [component][n]: of
   /// donors that are not mapped and have at most max_moment_degree.
   std::vector<double> powers;
