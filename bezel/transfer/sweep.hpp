@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -72,6 +73,17 @@ Swept balance(std::span<const ChunkResult> chunks, std::span<const double> donor
 Swept sweep(const OverlayMesh& donor, const OverlayMesh& target, std::span<Group> groups,
             const TransferOptions& options, const Progress& progress,
             const VisitBlocks& visit = {});
+
+/// Works on all target elements: what sweep_elements() does with OverlayMesh::spatial_order(), here
+/// or elsewhere.
+using Sweeper = std::function<std::vector<ChunkResult>(
+    const OverlayMesh& donor, const OverlayMesh& target, const FrontSearch& search,
+    std::span<Group> groups, const TransferOptions& options, const Progress& progress)>;
+
+/// transfer() with the target elements worked on by `sweeper`.
+TransferResult transfer_by(const Sweeper& sweeper, std::span<const Field> donors,
+                           const std::shared_ptr<const TriangleMesh>& target,
+                           const TransferOptions& options, const Progress& progress);
 
 /// All groups' components.
 std::size_t component_count(std::span<const Group> groups);

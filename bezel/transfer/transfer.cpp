@@ -146,19 +146,29 @@ void check_arguments(std::span<const Field> donors,
 
 }  // namespace
 
-TransferResult transfer(std::span<const Field> donors,
-                        std::shared_ptr<const TriangleMesh> target_mesh,
+TransferResult transfer(std::span<const Field> donors, std::shared_ptr<const TriangleMesh> target,
                         const TransferOptions& options, const Progress& progress) {
+  const auto here = [](const detail::OverlayMesh& from, const detail::OverlayMesh& to,
+                       const detail::FrontSearch& search, std::span<detail::Group> groups,
+                       const TransferOptions& how, const Progress& done) {
+    return detail::sweep_elements(from, to, search, groups, to.spatial_order(), how, done);
+  };
+  return detail::transfer_by(here, donors, target, options, progress);
+}
+
+TransferResult detail::transfer_by(const Sweeper& sweeper, std::span<const Field> donors,
+                                   const std::shared_ptr<const TriangleMesh>& target_mesh,
+                                   const TransferOptions& options, const Progress& progress) {
   const auto start = clock::now();
   check_arguments(donors, target_mesh, options);
   if (options.weight || !options.density.empty())
-    return detail::transfer_weighted(donors, target_mesh, options, progress);
+    return detail::transfer_weighted(sweeper, donors, target_mesh, options, progress);
   const detail::OverlayMesh donor(donors.front().space().mesh(), "donor", options.threads);
   const detail::OverlayMesh target(target_mesh, "target", options.threads);
   Plan plan = make_plan(donors, target_mesh, donor, target, options);
   const detail::FrontSearch search(donor);
-  const std::vector<detail::ChunkResult> chunks = detail::sweep_elements(
-      donor, target, search, plan.groups, target.spatial_order(), options, progress);
+  const std::vector<detail::ChunkResult> chunks =
+      sweeper(donor, target, search, plan.groups, options, progress);
   detail::Swept swept = detail::balance(chunks, donor.element_area,
                                         detail::component_count(plan.groups), options.uncovered);
   const std::size_t components = swept.made.size();

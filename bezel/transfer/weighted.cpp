@@ -11,6 +11,7 @@
 #include "bezel/base/parallel.hpp"
 #include "bezel/numeric/sum.hpp"
 #include "bezel/transfer/element_mass.hpp"
+#include "bezel/transfer/layout.hpp"
 #include "bezel/transfer/report.hpp"
 #include "bezel/transfer/sweep.hpp"
 #include "bezel/transfer/weight.hpp"
@@ -271,7 +272,7 @@ Field added(const Field& a, const Field& b) {
 
 }  // namespace
 
-TransferResult transfer_weighted(std::span<const Field> donors,
+TransferResult transfer_weighted(const Sweeper& sweeper, std::span<const Field> donors,
                                  const std::shared_ptr<const TriangleMesh>& target,
                                  const TransferOptions& options, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
@@ -304,7 +305,7 @@ TransferResult transfer_weighted(std::span<const Field> donors,
                                 weight_degree(*options.weight, target, "target", options.threads));
     weight = weight_field(*options.weight, degree, target, "target", options.threads);
   }
-  const TransferResult moved = transfer(products.fields, target, plain, progress);
+  const TransferResult moved = transfer_by(sweeper, products.fields, target, plain, progress);
 
   TransferResult result;
   result.report = moved.report;
