@@ -456,6 +456,8 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
     }
     if (blocks == nullptr) subtract_base(i);
     if (fits) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
+    // Donors of several degrees: what is not summed by moments is in the other sums.
+    if (!batched) extended_[i] = 1;
     c0 += nc;
   }
   if (loose_ && blocks == nullptr && components > 0) give_strips(t, own, components, given, made);

@@ -231,7 +231,7 @@ class ElementTransfer {
   std::vector<double> powers_;
   std::vector<std::vector<double>> base_;   // by group, [component]: taken off before integrating
   std::vector<std::uint8_t> have_moments_;  // by group: for this element
-  std::vector<std::uint8_t> extended_;      // by group: into what no donor covers of this element
+  std::vector<std::uint8_t> extended_;      // by group: sums_ hold what moment_sums_ lack
   std::vector<std::uint8_t> batched_;       // by group: goes by add_batched
   PairFit fit_;
   std::vector<std::uint8_t> fitted_;  // by group: goes by fit_
