@@ -8,8 +8,7 @@ constexpr double floor_of_length = 4e-15;
 // Nodes of any degree on the way as near to the curve as this are taken when their speed is more
 // even: crowding buys the last digit with a slow, uneven interpolant, and maps of regions by the
 // curve suffer.
-// Of more nodes for the same polynomial, a third more.
-constexpr double nearly_floor = 3e-14, lifted_floor = 4e-14;
+constexpr double nearly_floor = 4.2e-14;
 // A degree whose distance falls by this factor needs no closer look; the last degree, by the
 // second.
 constexpr double enough = 0.3, enough_at_last = 0.15;
@@ -32,9 +31,8 @@ bool within(const Problem<dim>& problem, const Score<dim>& score, double fractio
 
 // Whether to take nodes that are nearly exact instead of others.
 template <int dim>
-bool more_even(const Problem<dim>& problem, const Found<dim>& plain, const Found<dim>& other,
-               double fraction = nearly_floor) {
-  return within(problem, plain.score, fraction) &&
+bool more_even(const Problem<dim>& problem, const Found<dim>& plain, const Found<dim>& other) {
+  return within(problem, plain.score, nearly_floor) &&
          plain.score.min_speed > 1.1 * other.score.min_speed;
 }
 
@@ -46,8 +44,8 @@ void prefer_even(const Problem<dim>& problem, const Nodes<dim>& nodes, Found<dim
   Found<dim> found{nodes, measure(problem, nodes), CurveKind::orthogonal_distance};
   const bool solved = nodes.ordered() && tangent_residual(problem, nodes) <= is_root;
   if (solved) found.kind = CurveKind::equal_tangent;
-  if (more_even(problem, found, best, lifted_floor)) best = found;
-  if (solved && more_even(problem, found, root, lifted_floor)) root = found;
+  if (more_even(problem, found, best)) best = found;
+  if (solved && more_even(problem, found, root)) root = found;
 }
 
 // Nodes of degree `next.n` from those of a lower degree: feet of the points of its interpolant.
@@ -426,7 +424,7 @@ void climb(const Problem<dim>& problem, int degree, const Quick<dim>& quick, Fou
         // than needed, since each makes them less even.
         Nodes<dim> nodes = lift(problem, even.nodes, n);
         Score<dim> score = measure(problem, nodes);
-        for (int most = 2; most <= 8 && !within(problem, score, lifted_floor); most *= 2)
+        for (int most = 2; most <= 8 && !within(problem, score, nearly_floor); most *= 2)
           effort.distance += minimise_distance(problem, nodes, score, {.most = most});
         prefer_even(problem, nodes, best, root);
         effort.newton += solve_tangents(problem, nodes, true).iterations;
