@@ -230,7 +230,7 @@ class Level {
                            is_root ? CurveKind::equal_tangent : CurveKind::orthogonal_distance};
     if (better(score, best)) best = found;
     if (!plain_over && better(score, plain)) plain = found;
-    if (is_root && better(score, root)) root = found;
+    if (is_root && !score.slow && better(score, root)) root = found;
   }
   bool better(const Score<dim>& score, const Found<dim>& than) const {
     if (than.nodes.n != degree_) return true;  // nothing yet
