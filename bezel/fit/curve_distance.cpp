@@ -68,6 +68,9 @@ Score<dim> measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const S
       score.e[c][a] = f.e.c[c];
       score.tangent[c][a] = f.tangent.c[c];
     }
+    double forwards = 0.0;
+    for (std::size_t c = 0; c < dim; ++c) forwards += slope[c][a] * f.tangent.c[c];
+    if (!(forwards > 0.0)) score.turns = true;
     const double distance_squared = dot(f.e, f.e);
     sum += rung.weight[a] * speed * distance_squared;
     length += rung.weight[a] * speed;
@@ -94,7 +97,8 @@ Score<dim> measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const S
   score.slow_xi = -std::cos(vertex * std::numbers::pi / rung.m);
   score.d2 = std::isfinite(sum) ? std::sqrt(sum) : HUGE_VAL;
   score.min_speed = score.speed[slowest] / (0.5 * problem.length);
-  score.slow = !(std::sqrt(std::max(least_squared, 0.0)) >= least_speed * 0.5 * problem.length);
+  score.slow = score.turns ||
+               !(std::sqrt(std::max(least_squared, 0.0)) >= least_speed * 0.5 * problem.length);
   // An interpolant shrunk to where a closed curve starts would be nearest to it.
   score.length = length / problem.length;
   score.valid = nodes.ordered() && score.min_speed >= least_speed && score.length >= least_length &&
