@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bezel/mesh/delaunay.hpp"
+#include "bezel/mesh/morton.hpp"
 
 namespace bezel::planar {
 namespace {
@@ -202,6 +203,32 @@ class Surface {
   std::vector<std::int32_t> across_;
 };
 
+/// Numbers the points from `fixed` on and the triangles so that neighbours in the plane are near
+/// each other in the lists.
+void number_along_plane(Triangulation& t, std::size_t fixed) {
+  const std::vector<Vec2> before(t.points.begin() + static_cast<std::ptrdiff_t>(fixed),
+                                 t.points.end());
+  const std::vector<std::int32_t> order = morton_order(before);
+  std::vector<int> number(t.points.size());
+  for (std::size_t i = 0; i < fixed; ++i) number[i] = static_cast<int>(i);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    t.points[fixed + i] = before[at(order[i])];
+    number[fixed + at(order[i])] = static_cast<int>(fixed + i);
+  }
+  std::vector<Vec2> centres;
+  for (auto& triangle : t.triangles) {
+    Vec2 sum;
+    for (int& v : triangle) {
+      v = number[at(v)];
+      sum += t.points[at(v)];
+    }
+    centres.push_back(sum);
+  }
+  const std::vector<std::array<int, 3>> triangles = t.triangles;
+  const std::vector<std::int32_t> placed = morton_order(centres);
+  for (std::size_t i = 0; i < placed.size(); ++i) t.triangles[i] = triangles[at(placed[i])];
+}
+
 }  // namespace
 
 bool smooth(Triangulation& t, std::size_t fixed, int sweeps) {
@@ -244,7 +271,9 @@ bool fill(Triangulation& t, const Domain& domain, RandomStream& random) {
   for (const auto& corners : delaunay(t.points))
     if (domain.keep(corners)) t.triangles.push_back(corners);
   constexpr int sweeps = 12;
-  return smooth(t, fixed, sweeps);
+  if (!smooth(t, fixed, sweeps)) return false;
+  number_along_plane(t, fixed);
+  return true;
 }
 
 }  // namespace bezel::planar

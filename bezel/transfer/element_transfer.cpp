@@ -33,9 +33,17 @@ ElementTransfer::ElementTransfer(const OverlayMesh& donor, const OverlayMesh& ta
       policy_(policy),
       sums_(groups.size()),
       moment_sums_(groups.size()),
+      whole_(groups.size()),
+      base_(groups.size()),
       have_moments_(groups.size()),
-      batched_(groups.size()) {
-  for (std::size_t i = 0; i < groups.size(); ++i) batched_[i] = can_batch(groups[i]) ? 1 : 0;
+      extended_(groups.size()),
+      batched_(groups.size()),
+      fit_(donor, target, groups.size()),
+      fitted_(groups.size()) {
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    batched_[i] = can_batch(groups[i]) ? 1 : 0;
+    fitted_[i] = batched_[i] == 0 && PairFit::can(groups[i], donor, target) ? 1 : 0;
+  }
 }
 
 void ElementTransfer::Accumulators::reset(std::size_t functions, std::size_t components) {
@@ -86,6 +94,12 @@ void ElementTransfer::boundary_nodes(std::span<const Segment> run, int degree) {
       node.dx = at.derivative * (step * line.weight[i]);
       nodes_.push_back(node);
     }
+  }
+  for (const Bridge& bridge : bridges_) {
+    Node node;
+    node.x = origin_ + bridge.from + 0.5 * bridge.step;
+    node.dx = bridge.step;
+    nodes_.push_back(node);
   }
 }
 
@@ -138,6 +152,17 @@ void ElementTransfer::reference_nodes(const OverlayMesh& mesh, std::int32_t elem
       node.dq = {cross(node.dx, map.dv) * scale, cross(map.du, node.dx) * scale};
       nodes_.push_back(node);
     }
+  }
+  for (const Bridge& bridge : bridges_) {
+    Node node;
+    node.x = origin_ + bridge.from + 0.5 * bridge.step;
+    node.dx = bridge.step;
+    std::array<double, 3> lambda{};
+    if (!invert_map(mesh.degree, mesh.element(element), node.x, lambda, false)) continue;
+    node.q = {lambda[1], lambda[2]};
+    const MapPoint map = map_point(mesh, element, node.q);
+    node.dq = {cross(node.dx, map.dv) / map.det, cross(map.du, node.dx) / map.det};
+    nodes_.push_back(node);
   }
 }
 
@@ -296,9 +321,8 @@ void ElementTransfer::begin_moments(std::size_t i) {
   moment_sums_[i].reset(sums_[i].basis.size(), static_cast<std::size_t>(groups_[i].components));
 }
 
-ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment> segments,
-                                        GivenList& given, std::span<double> made,
-                                        ElementBlocks* blocks) {
+ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own, GivenList& given,
+                                        std::span<double> made, ElementBlocks* blocks) {
   ElementOutcome outcome;
   if (blocks != nullptr) blocks->reset(static_cast<std::size_t>(groups_[0].components));
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
@@ -310,80 +334,74 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
         static_cast<std::size_t>(g.components));
     components += static_cast<std::size_t>(g.components);
     have_moments_[i] = 0;
+    extended_[i] = 0;
   }
   const auto corners = target_.corners(t);
   origin_ = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
   masses_.assign(components, 0.0);
 
   // The regions: shape and area do not depend on the fields.
-  regions_.clear();
-  for (std::size_t begin = 0; begin < segments.size();) {
-    std::size_t end = begin + 1;
-    while (end < segments.size() && segments[end].donor == segments[begin].donor) ++end;
-    regions_.push_back({static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end), nullptr,
-                        nullptr, false});
-    begin = end;
-  }
   const bool batch =
-      donor_.degree == target_.degree && target_.degree <= max_batch_degree && !segments.empty();
-  if (batch) {
-    fill_batch(segments);
-    piece_shapes(target_.degree, origin_, batch_);
-  }
-  shapes_.clear();
+      donor_.degree == target_.degree && target_.degree <= max_batch_degree && blocks == nullptr;
+  const std::size_t first_batched =
+      batch ? static_cast<std::size_t>(std::find(batched_.begin(), batched_.end(), 1) -
+                                       batched_.begin())
+            : groups_.size();
+  have_segments_ = false;
+  loose_ = own.loose();
+  const bool summed = shape_regions(t, own, first_batched, outcome);
   double total = 0.0;
   double extended = 0.0;
-  const std::size_t first_given = given.mass.size();
-  for (const BatchRegion& region : regions_) {
-    const std::int32_t d = segments[region.begin].donor;
-    double area = 0.0, gap = 0.0;
-    if (batch) {
-      Vec2 open;
-      for (std::uint32_t k = region.begin; k < region.end; ++k) {
-        area += batch_.area[k];
-        open += Vec2{{batch_.step_x[k], batch_.step_y[k]}};
-      }
-      gap = norm(open);
-    } else {
-      const RunShape shape = run_shape(segments.subspan(region.begin, region.end - region.begin));
-      area = shape.area;
-      gap = shape.gap;
-    }
-    note_region(t, d, area, gap, outcome);
-    shapes_.push_back({d, area});
+  const std::size_t regions = own.donors.size(), first_given = given.donor.size();
+  given.target.resize(first_given + regions, t);
+  given.donor.resize(first_given + regions);
+  given.area.resize(first_given + regions);
+  std::size_t pairs = first_given;
+  for (std::size_t k = 0; k < regions; ++k) {
+    const std::int32_t d = own.donors[k];
+    const double area = area_[k];
     total += area;
     if (d == exterior) {
       outcome.uncovered_area = std::max(area, 0.0);
       continue;
     }
     outcome.covered_area += area;
-    given.target.push_back(t);
-    given.donor.push_back(d);
-    given.area.push_back(area);
-    ++outcome.pairs;
+    given.donor[pairs] = d;
+    given.area[pairs] = area;
+    ++pairs;
   }
-  given.mass.resize(first_given + static_cast<std::size_t>(outcome.pairs) * components);
+  if (pairs < first_given + regions) {
+    given.target.resize(pairs);
+    given.donor.resize(pairs);
+    given.area.resize(pairs);
+  }
+  outcome.pairs = static_cast<std::int32_t>(pairs - first_given);
+  given.mass.resize(pairs * components);
 
   std::size_t c0 = 0;
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     const Group& g = groups_[i];
     const auto nc = static_cast<std::size_t>(g.components);
-    region_mass_.assign(regions_.size() * nc, 0.0);
-    const bool batched = batch && batched_[i] != 0 && blocks == nullptr;
+    region_mass_.assign(own.donors.size() * nc, 0.0);
+    base_[i].assign(nc, 0.0);
+    const bool batched = batch && batched_[i] != 0;
     if (batched) {
       begin_moments(i);
-      add_batched(i, t, segments, region_mass_);
+      add_batched(i, t, own, summed && i == first_batched, region_mass_);
     }
-    double* to = given.mass.data() + first_given + c0;
-    for (std::size_t k = 0; k < regions_.size(); ++k) {
-      const auto run = segments.subspan(regions_[k].begin, regions_[k].end - regions_[k].begin);
-      const std::int32_t d = shapes_[k].donor;
-      const double area = shapes_[k].area;
+    const bool fitted = fitted_[i] != 0 && !own.donors.empty();
+    if (fitted) fit_.begin(i, g, t, all_runs(own), blocks == nullptr);
+    double* to = given.mass.data() + first_given * components + c0;
+    for (std::size_t k = 0; k < own.donors.size(); ++k) {
+      const std::int32_t d = own.donors[k];
+      const double area = area_[k];
       const std::span<double> here(region_mass_.data() + k * nc, nc);
       if (d == exterior) {
         const bool silent = std::abs(area) <= silent_gap * own_area;
         if (!(silent || policy_ == Uncovered::extend)) continue;
         if (i == 0) extended += area;
+        extended_[i] = 1;
+        const auto run = run_of(own, k);
         if (blocks != nullptr) {
           extension_blocks(g, t, run, area, run_shape(run).centre, sums_[i], *blocks);
           continue;
@@ -391,12 +409,21 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
         add_extension(g, t, run, area, run_shape(run).centre, sums_[i], here);
         for (std::size_t c = 0; c < nc; ++c) made[c0 + c] += here[c];
       } else if (!batched) {
-        const RunShape shape = run_shape(run);
-        if (blocks == nullptr && by_moments(g, t, d)) {
-          begin_moments(i);
-          add_pair_moments(g, t, d, shape, moment_sums_[i], here);
+        if (fitted && fit_.add(d, run_begin(k), run_end_[k], area, here)) {
+          if (blocks != nullptr) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
         } else {
-          add_pair(g, t, d, run, area, shape.centre, sums_[i], here);
+          const auto run = run_of(own, k);
+          const RunShape shape = run_shape(run);
+          if (blocks == nullptr && by_moments(g, t, d)) {
+            begin_moments(i);
+            add_pair_moments(g, t, d, shape, base_[i].data(), moment_sums_[i], here);
+          } else if (fitted) {
+            // The masses of all pairs by one rule: its errors cancel between neighbours.
+            fitted_mass_.assign(nc, 0.0);
+            add_pair(g, t, d, run, area, shape.centre, sums_[i], fitted_mass_);
+          } else {
+            add_pair(g, t, d, run, area, shape.centre, sums_[i], here);
+          }
         }
       }
       for (std::size_t c = 0; c < nc; ++c) masses_[c0 + c] += here[c];
@@ -405,10 +432,14 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
       to += components;
       if (blocks != nullptr) keep_pair(d, sums_[i], here, *blocks);
     }
+    if (fitted) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
     c0 += nc;
   }
+  if (loose_ && blocks == nullptr && components > 0) give_strips(t, own, components, given, made);
   outcome.partition_residual = std::abs(total - own_area) / own_area;
-  if (outcome.partition_residual > largest_joint_gap) outcome.inconsistent = true;
+  if (outcome.partition_residual > largest_joint_gap &&
+      outcome.partition_residual > largest_partition_residual(t))
+    outcome.inconsistent = true;
   const double integrated = outcome.covered_area + extended;
   // Reading the clock takes as long as a small solution: every so many elements are measured.
   const bool timed = elements_++ % timed_elements == 0;
@@ -418,10 +449,14 @@ ElementOutcome ElementTransfer::process(std::int32_t t, std::span<const Segment>
   if (blocks != nullptr) finish_blocks(groups_[0], t, sums_[0], integrated, *blocks, outcome);
   for (std::size_t i = 0; i < groups_.size() && blocks == nullptr; ++i) {
     const auto nc = static_cast<std::size_t>(groups_[i].components);
-    if (have_moments_[i] != 0) moments_to_powers(groups_[i], t, moment_sums_[i], sums_[i]);
-    finish(groups_[i], t, sums_[i], std::span(masses_).subspan(c0, nc), integrated,
-           groups_[i].target_out(t), outcome);
+    const std::span<const double> mass = std::span(masses_).subspan(c0, nc);
+    const std::span<double> result = groups_[i].target_out(t);
     c0 += nc;
+    if (finish_straight(i, t, mass, integrated, result, outcome)) continue;
+    if (have_moments_[i] != 0) moments_to_powers(i, t);
+    std::span<const double> whole;
+    if (outcome.uncovered_area == 0.0 && batch) whole = whole_[i];
+    finish(groups_[i], t, sums_[i], whole, mass, base_[i], integrated, result, outcome);
   }
   if (timed) {
     outcome.solve_seconds =

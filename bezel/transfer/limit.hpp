@@ -13,21 +13,6 @@
 
 namespace bezel::detail {
 
-/// A target element and a donor element that overlap.
-struct Overlapping {
-  std::int32_t target, donor;
-};
-
-/// On each target element the range of one component of the donor over the donor elements that
-/// overlap it; elements without any have the range of the whole donor.
-///
-/// @param zero  target elements where the field counts as 0 in part: 0 is in their range
-/// @accuracy ranges are certified and exceed the true ones by 1e-10 of the coefficients' largest
-/// value (constants: by nothing; in a physical basis on curved elements by the rounding of the
-/// composition, 1e-13)
-ValueBounds local_bounds(const Field& donor, int component, std::span<const Overlapping> pairs,
-                         std::size_t targets, std::span<const std::int32_t> zero, int threads);
-
 /// What messages call it: "field 'u', component 1".
 std::string component_name(const Field& field, int component);
 

@@ -20,6 +20,9 @@ namespace bezel::detail {
 /// Highest field degree that is integrated by moments.
 inline constexpr int max_moment_degree = 3;
 
+/// Highest degree of power_matrix and powers_from_moments.
+inline constexpr int max_power_degree = 10;
+
 /// Points that are worked on together.
 inline constexpr std::size_t moment_lanes = 8;
 
@@ -56,61 +59,17 @@ struct RegionPlace {
 
 /// Adds the integrals of f m and m over a region, m the monomials in target coordinates:
 ///   product[n * components + c] += integral of f_c m_n, basis[n] += integral of m_n,
-///   mass[c] = integral of f_c; n in the order of triangle_index(degree, a, b).
+///   mass[c] = integral of f_c + base[c]; n in the order of triangle_index(degree, a, b),
+/// where f is the donor's polynomial less the constant base[c].
 /// @param moments  about the region's centre, up to degree 2 degree
-/// @param donor    coefficients of the donor's monomials, [n][component]
+/// @param donor    coefficients of the donor's monomials, [component][n]
 void add_region(int degree, const RegionPlace& place, const double* moments, int components,
-                const double* donor, double* product, double* basis, double* mass);
-
-/// The boundary pieces of all regions of one target element, piece by piece in arrays.
-struct PieceBatch {
-  std::size_t count = 0, stride = 0;   ///< stride: count, padded
-  std::vector<double> from, to;        ///< [piece] parameters on its curve, either order
-  std::vector<double> x, y;            ///< [control point][piece] of the curves
-  std::vector<double> moments;         ///< [n][piece], about the target's centre
-  std::vector<double> area;            ///< [piece] between it and the rays from an origin
-  std::vector<double> step_x, step_y;  ///< [piece] end minus start
-  void resize(std::size_t pieces, int degree, int moment_degree);
-};
-
-/// Barycentrics 1 and 2, less 1/3, of the target's triangle and their inverse.
-struct TargetPlace {
-  Vec2 centre, first, second;  ///< coordinates (dot(first, x - centre), dot(second, x - centre))
-  Vec2 along_first, along_second;  ///< columns of the inverse
-  double area;                     ///< of the plane per unit of the coordinates
-};
-
-inline constexpr int max_batch_degree = 3;  ///< of the pieces
+                const double* donor, const double* base, double* product, double* basis,
+                double* mass);
 
 /// weight[i, j] = integral of B_i B_j' - B_j B_i' over [0, 1], i < j in lexicographic order: the
 /// sum of weight[i, j] cross(p_i, p_j) is twice the area between a curve and the rays to its ends.
 const std::vector<double>& area_weights(int degree);
-
-/// Areas (from the origin) and steps of the pieces, in the plane.
-/// @param degree  of the pieces, 1 .. max_batch_degree
-void piece_shapes(int degree, const Vec2& origin, PieceBatch& batch);
-
-/// The moments of each piece in the target's coordinates.
-/// @param table  for pieces of one degree, at most max_batch_degree
-void piece_moments(const PieceTable& table, int moment_degree, const TargetPlace& place,
-                   PieceBatch& batch);
-
-/// A region, and what it gets.
-struct BatchRegion {
-  std::uint32_t begin, end;  ///< its pieces
-  const Frame* frame;        ///< of the donor's polynomial
-  const double* donor;       ///< as in add_region; nullptr: the region gets nothing
-  bool far;  ///< out: not added, for the donor's polynomial is much steeper than the target's
-};
-
-/// add_region for the regions of a batch, about the target's centre.
-/// @param mass  [region][component]
-void add_batch(int degree, const TargetPlace& place, const PieceBatch& batch,
-               std::span<BatchRegion> regions, int components, double* product, double* basis,
-               double* mass);
-
-/// powers[n][component] += integrals with l0^i l1^j l2^k from those with the monomials.
-void powers_from_moments(int degree, int components, const double* moments, double* powers);
 
 /// Row n: coefficients of l0^i l1^j l2^k (in index order) as a polynomial in x = l1 - 1/3, y = l2 -
 /// 1/3.

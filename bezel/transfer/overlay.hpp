@@ -20,15 +20,19 @@
 
 namespace bezel::detail {
 
-/// Curves nearer to each other than this fraction of the smaller one count as coincident. Pieces
-/// merged so leave joints open by at most that much; the sums over a whole element close exactly
-/// all the same.
+/// Curves nearer to each other than this fraction of the thinnest element beside them count as
+/// coincident. Pieces merged so leave joints open by at most that much; the sums over a whole
+/// element close exactly all the same.
 inline constexpr double coincidence_fraction = 1e-13;
 /// ... and never less than the rounding of the coordinates themselves.
 inline constexpr double coordinate_rounding = 32.0 * 0x1p-53;
+inline constexpr double point_rounding = 4.0 * 0x1p-53;
+inline double coincidence_distance(double smallest_width, double largest_coordinate) {
+  return std::max(coincidence_fraction * smallest_width, coordinate_rounding * largest_coordinate);
+}
+/// Of two edges when their elements' widths are not looked at: never less than with them.
 inline double coincidence_distance(const CurveCache& a, const CurveCache& b) {
-  return std::max(coincidence_fraction * std::min(a.diameter, b.diameter),
-                  coordinate_rounding * std::max(a.magnitude, b.magnitude));
+  return coincidence_distance(std::min(a.diameter, b.diameter), std::max(a.magnitude, b.magnitude));
 }
 /// A contact tells sides only when it is this far (in parameter) from edge ends and from other
 /// contacts.
@@ -44,14 +48,71 @@ struct Part {
   double from = 0, to = 0;
 };
 
+/// Instead of an element: both parts of a segment are one curve.
+inline constexpr std::int32_t one_curve = -2;
+
 /// One piece of the boundary of (T n donor), run counter-clockwise. A piece on both meshes' edges
 /// has both parts.
 struct Segment {
   std::int32_t donor =
       exterior;  ///< donor element, or exterior: the part of T that no donor covers
-  Part target;   ///< edge -1 when the piece is no part of T's boundary
-  Part source;   ///< the same for the donor's boundary
+  std::int32_t across = one_curve;  ///< of parts that are apart by more than the rounding of
+                                    ///< points: the donor element beyond, or exterior
+  Part target;                      ///< edge -1 when the piece is no part of T's boundary
+  Part source;                      ///< the same for the donor's boundary
 };
+
+/// One piece of the boundaries inside or around a target element T, with the regions T n D on its
+/// two sides: every piece of a donor edge inside T bounds two of them.
+struct BoundaryPiece {
+  Part part;  ///< of an edge of the donor mesh when `source`, else of T's boundary
+  bool source;
+  std::int32_t left;   ///< number of the region on its left
+  std::int32_t right;  ///< number of the region on its right, or -1
+};
+
+/// The overlay of one target element.
+struct ElementPieces {
+  std::span<const std::int32_t> donors;  ///< donor element of each region, or exterior
+  std::span<const BoundaryPiece> pieces;
+  /// Pieces by region, for each donor those that bound its region counter-clockwise: only where
+  /// edges of both meshes coincide, touch or nearly so; else empty, and the pieces tell all.
+  std::span<const Segment> segments;
+  bool loose() const { return !segments.empty(); }  ///< joints may be open a little
+};
+
+/// The overlays of several target elements.
+class OverlayList {
+ public:
+  void clear() {
+    donors.clear();
+    pieces.clear();
+    segments.clear();
+    ends_.clear();
+  }
+  /// What was added since the last call is one element's.
+  void close() { ends_.push_back({donors.size(), pieces.size(), segments.size()}); }
+  ElementPieces operator[](std::size_t i) const {
+    const End begin = i == 0 ? End{} : ends_[i - 1];
+    const End& end = ends_[i];
+    return {{donors.data() + begin.donor, end.donor - begin.donor},
+            {pieces.data() + begin.piece, end.piece - begin.piece},
+            {segments.data() + begin.segment, end.segment - begin.segment}};
+  }
+
+  std::vector<std::int32_t> donors;
+  std::vector<BoundaryPiece> pieces;
+  std::vector<Segment> segments;
+
+ private:
+  struct End {
+    std::size_t donor = 0, piece = 0, segment = 0;
+  };
+  std::vector<End> ends_;
+};
+
+/// The segments of an element from its pieces alone: those of each region together, in order.
+void collect_segments(const ElementPieces& own, std::vector<Segment>& out);
 
 struct OverlayCounts {
   std::int64_t pairs = 0, crossings = 0, tangencies = 0, overlaps = 0, unresolved = 0;
@@ -65,11 +126,10 @@ class ElementOverlay {
 
   /// Forgets the edges computed so far (memory stays bounded by a chunk of elements).
   void begin_chunk();
-  /// The segments of all T n D of target element t, those of each donor together,
-  /// the exterior's first.
+  /// Adds the overlay of target element t to the list.
   /// counts: contacts are counted when first computed in a chunk by their owner (the edge's left or
   /// only element).
-  std::span<const Segment> segments(std::int32_t t, OverlayCounts& counts);
+  void add(std::int32_t t, OverlayList& list, OverlayCounts& counts);
 
  private:
   struct Contact {
@@ -81,6 +141,7 @@ class ElementOverlay {
   struct Coincidence {
     double r0, r1, s0, s1;
     std::int32_t donor_edge;
+    bool apart;  // by more than the rounding of points
   };
   struct Piece {
     double r0, r1;
@@ -93,13 +154,14 @@ class ElementOverlay {
     std::uint32_t contact_begin = 0, contact_end = 0;
     std::uint32_t coincidence_begin = 0, coincidence_end = 0;
     std::uint32_t piece_begin = 0, piece_end = 0;
-    double gap = 0;
+    double gap = 0;  // largest between points of the two meshes, of the edge's diameter
     std::int32_t crossings = 0, tangencies = 0, overlaps = 0, unresolved = 0;
   };
   struct Mark {
     std::int32_t edge;
     double s;
     std::int8_t direction;  // +1 enters T as s increases, -1 leaves, 0 unknown
+    std::int32_t next;      // on the same edge, in the walk; -1 for none
   };
 
   /// Where something is remembered that holds for the current chunk only.
@@ -118,12 +180,31 @@ class ElementOverlay {
   // Ordinary edges and elements (overlay_walk.cpp).
   std::int32_t donor_at_vertex(std::int32_t vertex);
   bool walk_edge(std::int32_t edge, Record& record);
-  bool walk_inside(std::int32_t t);
+  bool walk_straight_edge(std::int32_t edge, Record& record);
+  void keep_walk(Record& record, std::size_t contact_begin, std::size_t piece_begin, double gap);
+  bool walk_inside(std::int32_t t, OverlayList& list);
+  void mark_contacts(std::int32_t t);
+  /// The number of a donor's region.
+  std::int32_t region_of(std::int32_t donor, OverlayList& list) {
+    Group& group = group_[static_cast<std::size_t>(donor + 1)];
+    if (group.stamp != group_now_) {
+      group = {group_now_, static_cast<std::uint32_t>(group_count_++)};
+      list.donors.push_back(donor);
+    }
+    return static_cast<std::int32_t>(group.slot);
+  }
+  void add_target_pieces(std::int32_t t, OverlayList& list);
   /// Puts all common points of two edges on the list of contacts, when all are plain crossings.
   bool plain_crossings(const CurveCache& curve, const CurveCache& other, double distance,
                        std::int32_t donor_edge, double& gap);
   void next_walk();
-  void group_segments();
+  void next_group();
+  void find_segments(std::int32_t t);
+  void group_segments(OverlayList& list);
+  /// The coincidence of a piece whose donor edge has an element on the target element's side, and
+  /// that element.
+  std::pair<std::size_t, std::int32_t> facing_coincidence(const Record& record, const Piece& piece,
+                                                          bool reversed) const;
   std::int32_t locate_piece(std::span<const Vec2> curve, double r0, double r1) const;
   std::int32_t best_donor(const Vec2& p, double& margin) const;
   bool inside_target(std::int32_t t, std::span<const Vec2> curve, double s0, double s1) const;
@@ -140,6 +221,8 @@ class ElementOverlay {
   std::vector<Place> vertex_place_;          // by target node: the donor element around it
   std::int32_t last_donor_ = 0;              // of the vertices looked at
   std::vector<std::uint32_t> walk_stamp_;    // by donor edge
+  std::vector<std::int32_t> first_mark_;     // by donor edge: of those with this walk's stamp
+  std::vector<std::int32_t> crossed_;        // donor edges, as met
   std::vector<std::uint32_t> inside_stamp_;  // by donor node
   std::uint32_t walk_now_ = 0;
   std::vector<std::int32_t> walk_;
@@ -153,12 +236,13 @@ class ElementOverlay {
   std::vector<Mark> marks_;
   std::vector<std::pair<std::int32_t, std::pair<double, double>>>
       covered_;  // donor edge, s interval on T's boundary
-  std::vector<Segment> segments_, grouped_;
+  std::vector<Segment> segments_;
   struct Group {
     std::uint32_t stamp = 0, slot = 0;
   };
   std::vector<Group> group_;  // by donor element + 1
   std::uint32_t group_now_ = 0;
+  std::size_t group_count_ = 0;
   std::vector<std::uint32_t> slots_, group_end_;
   std::vector<double> breaks_;
   CurveIntersections found_;

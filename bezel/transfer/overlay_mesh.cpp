@@ -7,6 +7,7 @@
 #include "bezel/base/error.hpp"
 #include "bezel/base/parallel.hpp"
 #include "bezel/geometry/triangle.hpp"
+#include "bezel/mesh/morton.hpp"
 #include "bezel/transfer/group.hpp"
 
 namespace bezel::detail {
@@ -17,16 +18,6 @@ constexpr std::size_t block = 1024;
 constexpr int longest_walk = 64;
 /// A point whose barycentric coordinates exceed this lies in one element only, and no edge is near.
 constexpr double clear_of_edges = 1e-8;
-
-std::uint64_t spread_bits(std::uint64_t x) {
-  x &= 0xffffffffULL;
-  x = (x | (x << 16)) & 0x0000ffff0000ffffULL;
-  x = (x | (x << 8)) & 0x00ff00ff00ff00ffULL;
-  x = (x | (x << 4)) & 0x0f0f0f0f0f0f0f0fULL;
-  x = (x | (x << 2)) & 0x3333333333333333ULL;
-  x = (x | (x << 1)) & 0x5555555555555555ULL;
-  return x;
-}
 
 }  // namespace
 
@@ -88,6 +79,12 @@ OverlayMesh::OverlayMesh(std::shared_ptr<const TriangleMesh> source, const std::
                },
                threads);
   for (const Box2& b : element_box) box.include(b);
+  edge_width.resize(edges);
+  for (std::size_t e = 0; e < edges; ++e) {
+    edge_width[e] = edge_cache[e].diameter;
+    for (const std::int32_t side : edge_sides[e])
+      if (side != exterior) edge_width[e] = std::min(edge_width[e], element_width(side));
+  }
 }
 
 std::array<Vec2, 3> OverlayMesh::corners(std::int32_t e) const {
@@ -96,24 +93,18 @@ std::array<Vec2, 3> OverlayMesh::corners(std::int32_t e) const {
 }
 
 std::vector<std::int32_t> OverlayMesh::spatial_order() const {
-  std::vector<std::pair<std::uint64_t, std::int32_t>> keyed(element_count());
-  const double width = std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], 1e-300});
-  const double scale = 4294967295.0 / width;
-  for (std::size_t e = 0; e < keyed.size(); ++e) {
-    const Vec2 c = element_box[e].centre() - box.lo;
-    const auto cell = [&](double x) {
-      return spread_bits(static_cast<std::uint64_t>(std::clamp(x * scale, 0.0, 4294967295.0)));
-    };
-    keyed[e] = {cell(c[0]) | (cell(c[1]) << 1), static_cast<std::int32_t>(e)};
-  }
-  std::sort(keyed.begin(), keyed.end());
-  std::vector<std::int32_t> order(keyed.size());
-  for (std::size_t i = 0; i < keyed.size(); ++i) order[i] = keyed[i].second;
-  return order;
+  std::vector<Vec2> centres(element_count());
+  for (std::size_t e = 0; e < centres.size(); ++e) centres[e] = element_box[e].centre();
+  return morton_order(centres);
 }
 
 FrontSearch::FrontSearch(const OverlayMesh& mesh) : mesh_(mesh), tree_(mesh.element_box) {
   collect_edges_at_vertices();
+  if (mesh.degree == 1) straight_ = straight_elements(mesh);
+}
+
+FrontSearch::FrontSearch(const OverlayMesh& part, bool connected) : FrontSearch(part) {
+  connected_ = connected;
 }
 
 void FrontSearch::collect_edges_at_vertices() {
@@ -152,6 +143,21 @@ void FrontSearch::collect_edges_at_vertices() {
 }
 
 std::int32_t FrontSearch::containing(const Vec2& p, std::int32_t start, Memory& memory) const {
+  if (!straight_.empty()) {
+    // Towards the side that p is farthest beyond.
+    for (int step = 0; start >= 0 && step < longest_walk; ++step) {
+      const StraightElement& element = straight_[static_cast<std::size_t>(start)];
+      const auto& c = element.corner;
+      const std::array<double, 3> l = {cross(c[1] - c[0], p - c[0]), cross(c[2] - c[1], p - c[1]),
+                                       cross(c[0] - c[2], p - c[2])};
+      const auto smallest = std::min_element(l.begin(), l.end());
+      if (*smallest >= 0.0)
+        return *smallest > clear_of_edges * (l[0] + l[1] + l[2]) ? start : exterior;
+      // -1 stays negative.
+      start = element.beyond[static_cast<std::size_t>(smallest - l.begin())] >> 2;
+    }
+    start = exterior;
+  }
   const auto margin_of = [&](std::int32_t e, std::array<double, 3>& lambda) {
     return (mesh_.degree == 1 || mesh_.element_box[static_cast<std::size_t>(e)].contains(p)) &&
            invert_map(mesh_.degree, mesh_.element(e), p, lambda, false);

@@ -102,17 +102,22 @@ bool ElementOverlay::walk_edge(std::int32_t edge, Record& record) {
   }
   pieces_.push_back({r, 1.0, donor, -1});
 
+  keep_walk(record, begin, piece_begin, gap / std::max(curve.diameter, 1e-300));
+  return true;
+}
+
+void ElementOverlay::keep_walk(Record& record, std::size_t contact_begin, std::size_t piece_begin,
+                               double gap) {
   record = Record{};
   record.walked = true;
-  record.contact_begin = static_cast<std::uint32_t>(begin);
+  record.contact_begin = static_cast<std::uint32_t>(contact_begin);
   record.contact_end = static_cast<std::uint32_t>(contacts_.size());
   record.coincidence_begin = record.coincidence_end =
       static_cast<std::uint32_t>(coincidences_.size());
   record.piece_begin = static_cast<std::uint32_t>(piece_begin);
   record.piece_end = static_cast<std::uint32_t>(pieces_.size());
   record.gap = gap;
-  record.crossings = static_cast<std::int32_t>(contacts.size());
-  return true;
+  record.crossings = static_cast<std::int32_t>(contacts_.size() - contact_begin);
 }
 
 bool ElementOverlay::plain_crossings(const CurveCache& curve, const CurveCache& other,
@@ -140,29 +145,72 @@ void ElementOverlay::next_walk() {
   }
 }
 
-// Along a donor edge the crossings with T's boundary enter and leave T in turn. Edges without a
-// crossing are inside T when they end in a vertex inside T; in a connected donor mesh that is
-// reached from a crossing, for T's boundary is all inside the donor.
-bool ElementOverlay::walk_inside(std::int32_t t) {
-  if (!search_.connected()) return false;
-  const std::size_t before = segments_.size();
-  const auto give_up = [&] {
-    segments_.resize(before);
-    return false;
-  };
+void ElementOverlay::mark_contacts(std::int32_t t) {
   marks_.clear();
+  crossed_.clear();
+  next_walk();
   for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
     const Record& record = known_record(side.edge);
     for (std::uint32_t i = record.contact_begin; i < record.contact_end; ++i) {
       const Contact& c = contacts_[i];
+      const auto e = static_cast<std::size_t>(c.donor_edge);
+      std::int32_t& first = first_mark_[e];
+      if (walk_stamp_[e] != walk_now_) {
+        walk_stamp_[e] = walk_now_;
+        first = -1;
+        crossed_.push_back(c.donor_edge);
+      }
+      const auto here = static_cast<std::int32_t>(marks_.size());
       marks_.push_back(
-          {c.donor_edge, c.s, static_cast<std::int8_t>(side.reversed ? -c.sign : c.sign)});
+          {c.donor_edge, c.s, static_cast<std::int8_t>(side.reversed ? -c.sign : c.sign), -1});
+      std::int32_t* place = &first;  // in ascending order of s
+      while (*place >= 0 && marks_[static_cast<std::size_t>(*place)].s < c.s)
+        place = &marks_[static_cast<std::size_t>(*place)].next;
+      marks_.back().next = *place;
+      *place = here;
     }
   }
-  std::sort(marks_.begin(), marks_.end(), [](const Mark& a, const Mark& b) {
-    return std::tie(a.edge, a.s) < std::tie(b.edge, b.s);
-  });
-  next_walk();
+}
+
+void ElementOverlay::next_group() {
+  group_count_ = 0;
+  if (++group_now_ == 0) {
+    std::fill(group_.begin(), group_.end(), Group{});
+    group_now_ = 1;
+  }
+}
+
+void ElementOverlay::add_target_pieces(std::int32_t t, OverlayList& list) {
+  for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
+    const Record& record = known_record(side.edge);
+    const std::size_t first = list.pieces.size(), count = record.piece_end - record.piece_begin;
+    list.pieces.resize(first + count);
+    BoundaryPiece* to = list.pieces.data() + first;
+    const Piece* from = pieces_.data() + record.piece_begin;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto& [r0, r1, donor, coincidence] = from[i];
+      to[i].part = side.reversed ? Part{side.edge.value, r1, r0} : Part{side.edge.value, r0, r1};
+      to[i].source = false;
+      to[i].left = region_of(donor, list);
+      to[i].right = -1;
+    }
+  }
+}
+
+// Along a donor edge the crossings with T's boundary enter and leave T in turn. Edges without a
+// crossing are inside T when they end in a vertex inside T; in a connected donor mesh that is
+// reached from a crossing, for T's boundary is all inside the donor.
+bool ElementOverlay::walk_inside(std::int32_t t, OverlayList& list) {
+  if (!search_.connected()) return false;
+  const std::size_t donors_before = list.donors.size(), pieces_before = list.pieces.size();
+  const auto give_up = [&] {
+    list.donors.resize(donors_before);
+    list.pieces.resize(pieces_before);
+    return false;
+  };
+  next_group();
+  add_target_pieces(t, list);
+  mark_contacts(t);
   walk_.clear();
   const auto inside = [&](std::int32_t vertex) {
     std::uint32_t& stamp = inside_stamp_[static_cast<std::size_t>(vertex)];
@@ -170,28 +218,35 @@ bool ElementOverlay::walk_inside(std::int32_t t) {
     stamp = walk_now_;
     walk_.push_back(vertex);
   };
-  for (std::size_t i = 0; i < marks_.size();) {
-    const std::int32_t e = marks_[i].edge;
-    walk_stamp_[static_cast<std::size_t>(e)] = walk_now_;
+  const auto add_part = [&](std::int32_t edge, double from, double to) {
+    const auto& sides = donor_.edge_sides[static_cast<std::size_t>(edge)];
+    const std::int32_t left = region_of(sides[0], list), right = region_of(sides[1], list);
+    list.pieces.push_back({{edge, from, to}, true, left, right});
+  };
+  for (const std::int32_t e : crossed_) {
     const auto& ends = donor_.edge_vertex[static_cast<std::size_t>(e)];
-    if (marks_[i].direction < 0) {
+    std::int32_t i = first_mark_[static_cast<std::size_t>(e)];
+    double last = -1.0;
+    if (marks_[static_cast<std::size_t>(i)].direction < 0) {
+      const Mark& mark = marks_[static_cast<std::size_t>(i)];
       inside(ends[0]);
-      add_donor_part(e, 0.0, marks_[i].s);
-      ++i;
+      add_part(e, 0.0, mark.s);
+      last = mark.s;
+      i = mark.next;
     }
-    for (; i < marks_.size() && marks_[i].edge == e; i += 2) {
-      if (marks_[i].direction < 0) return give_up();
-      if (i > 0 && marks_[i - 1].edge == e && marks_[i].s - marks_[i - 1].s < contact_isolation)
-        return give_up();
-      if (i + 1 == marks_.size() || marks_[i + 1].edge != e) {
+    while (i >= 0) {
+      const Mark& enter = marks_[static_cast<std::size_t>(i)];
+      if (enter.direction < 0 || enter.s - last < contact_isolation) return give_up();
+      if (enter.next < 0) {
         inside(ends[1]);
-        add_donor_part(e, marks_[i].s, 1.0);
-        ++i;
+        add_part(e, enter.s, 1.0);
         break;
       }
-      if (marks_[i + 1].direction > 0 || marks_[i + 1].s - marks_[i].s < contact_isolation)
-        return give_up();
-      add_donor_part(e, marks_[i].s, marks_[i + 1].s);
+      const Mark& leave = marks_[static_cast<std::size_t>(enter.next)];
+      if (leave.direction > 0 || leave.s - enter.s < contact_isolation) return give_up();
+      add_part(e, enter.s, leave.s);
+      last = leave.s;
+      i = leave.next;
     }
   }
   for (std::size_t k = 0; k < walk_.size(); ++k) {
@@ -199,7 +254,7 @@ bool ElementOverlay::walk_inside(std::int32_t t) {
       std::uint32_t& stamp = walk_stamp_[static_cast<std::size_t>(e)];
       if (stamp == walk_now_) continue;
       stamp = walk_now_;
-      add_donor_part(e, 0.0, 1.0);
+      add_part(e, 0.0, 1.0);
       for (const std::int32_t v : donor_.edge_vertex[static_cast<std::size_t>(e)]) inside(v);
     }
   }
@@ -207,26 +262,19 @@ bool ElementOverlay::walk_inside(std::int32_t t) {
 }
 
 // In the order in which the donors appear, the part that no donor covers first.
-void ElementOverlay::group_segments() {
-  if (++group_now_ == 0) {
-    std::fill(group_.begin(), group_.end(), Group{});
-    group_now_ = 1;
-  }
+void ElementOverlay::group_segments(OverlayList& list) {
+  next_group();
   group_end_.clear();
   slots_.clear();
+  const std::size_t first_segment = list.segments.size();
   if (std::any_of(segments_.begin(), segments_.end(),
-                  [](const Segment& s) { return s.donor == exterior; })) {
-    group_[0] = {group_now_, 0};
-    group_end_.push_back(0);
-  }
+                  [](const Segment& s) { return s.donor == exterior; }))
+    region_of(exterior, list);
   for (const Segment& segment : segments_) {
-    Group& group = group_[static_cast<std::size_t>(segment.donor + 1)];
-    if (group.stamp != group_now_) {
-      group = {group_now_, static_cast<std::uint32_t>(group_end_.size())};
-      group_end_.push_back(0);
-    }
-    slots_.push_back(group.slot);
-    ++group_end_[group.slot];
+    const auto slot = static_cast<std::uint32_t>(region_of(segment.donor, list));
+    slots_.push_back(slot);
+    if (group_end_.size() < group_count_) group_end_.resize(group_count_, 0);
+    ++group_end_[slot];
   }
   std::uint32_t begin = 0;
   for (std::uint32_t& end : group_end_) {
@@ -234,9 +282,18 @@ void ElementOverlay::group_segments() {
     end = begin;
     begin += size;
   }
-  grouped_.resize(segments_.size());
-  for (std::size_t i = 0; i < segments_.size(); ++i)
-    grouped_[group_end_[slots_[i]]++] = segments_[i];
+  list.segments.resize(first_segment + segments_.size());
+  list.pieces.resize(list.pieces.size() + segments_.size());
+  Segment* const segments = list.segments.data() + first_segment;
+  BoundaryPiece* const pieces = list.pieces.data() + list.pieces.size() - segments_.size();
+  for (std::size_t i = 0; i < segments_.size(); ++i) {
+    const Segment& segment = segments_[i];
+    const std::uint32_t at = group_end_[slots_[i]]++;
+    const bool source = segment.target.edge < 0;
+    segments[at] = segment;
+    pieces[at] = {source ? segment.source : segment.target, source,
+                  static_cast<std::int32_t>(slots_[i]), -1};
+  }
 }
 
 }  // namespace bezel::detail

@@ -1,18 +1,57 @@
 #pragma once
-// Internal: one pass over all target elements, and the balance of what it moved.
+// Internal: a pass over target elements, and the balance of what it moved.
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "bezel/base/progress.hpp"
+#include "bezel/transfer/conserve.hpp"
 #include "bezel/transfer/element_transfer.hpp"
 #include "bezel/transfer/group.hpp"
 #include "bezel/transfer/overlay_mesh.hpp"
 #include "bezel/transfer/transfer.hpp"
 
 namespace bezel::detail {
+
+/// Target elements worked on together: edges inside a chunk are intersected once, edges between two
+/// chunks twice (with the same result), and nothing else is remembered.
+inline constexpr std::size_t chunk_size = 256;
+
+/// What a chunk of target elements leaves behind, in the order of the elements.
+struct ChunkResult {
+  GivenList given;
+  OverlayCounts counts;
+  std::vector<double> made;    ///< per component
+  ElementMasses element_made;  ///< with Conserve::total
+  std::vector<std::pair<ElementId, double>> uncovered;
+  double uncovered_area = 0;
+  double max_partition_residual = 0, max_joint_gap = 0, max_mass_defect = 0;
+  double overlay = 0, integrate = 0, solve = 0;  ///< seconds
+  std::int32_t inconsistent = -1;                ///< the first such element
+  std::int64_t inconsistent_count = 0;
+};
+
+/// Receives the blocks of target element t, the index-th one worked on: ascending indices within a
+/// task, several tasks at once.
+using VisitBlocks =
+    std::function<void(std::size_t index, std::int32_t t, const ElementBlocks& blocks)>;
+
+/// Integrates and solves on some target elements, chunk after chunk of `elements`; the coefficients
+/// are in the groups, or (with `visit`, which takes one group of basis functions) go to `visit`.
+///
+/// What a chunk leaves depends on its own elements and the donors near them only: a part of
+/// OverlayMesh::spatial_order() that begins at a multiple of chunk_size gives the bits of the
+/// whole.
+/// @throws NumericsError where a mass matrix is singular
+std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayMesh& target,
+                                        const FrontSearch& search, std::span<Group> groups,
+                                        std::span<const std::int32_t> elements,
+                                        const TransferOptions& options, const Progress& progress,
+                                        const VisitBlocks& visit = {});
 
 /// What a pass found.
 struct Swept {
@@ -23,28 +62,30 @@ struct Swept {
   double max_mass_defect = 0;
 };
 
-/// Receives the blocks of target element t, the index-th one worked on: ascending indices within a
-/// task, several tasks at once.
-using VisitBlocks =
-    std::function<void(std::size_t index, std::int32_t t, const ElementBlocks& blocks)>;
+/// Adds up what all chunks left, in their order.
+/// @param donor_area  of the donor elements
+/// @throws UncoveredError, NumericsError as transfer()
+Swept balance(std::span<const ChunkResult> chunks, std::span<const double> donor_area,
+              std::size_t components, Uncovered policy);
 
-/// Integrates and solves on every target element; the result is in the groups, or (with `visit`,
-/// which takes one group of basis functions) goes to `visit`.
+/// sweep_elements() over all target elements, and their balance.
 /// @throws UncoveredError, NumericsError as transfer()
 Swept sweep(const OverlayMesh& donor, const OverlayMesh& target, std::span<Group> groups,
             const TransferOptions& options, const Progress& progress,
             const VisitBlocks& visit = {});
 
-/// One line per component of a field that was moved.
-/// @param spread          mass added besides, or empty
-/// @param element_defect  largest |element mass - mass received|, per component
-void append_reports(const Field& donor, const Field& moved, std::span<const double> outside,
-                    std::span<const double> made, std::span<const double> spread,
-                    std::span<const double> element_defect, int threads,
-                    std::vector<FieldReport>& out);
+/// Works on all target elements: what sweep_elements() does with OverlayMesh::spatial_order(), here
+/// or elsewhere.
+using Sweeper = std::function<std::vector<ChunkResult>(
+    const OverlayMesh& donor, const OverlayMesh& target, const FrontSearch& search,
+    std::span<Group> groups, const TransferOptions& options, const Progress& progress)>;
 
-/// Target elements worked on together: edges inside a chunk are intersected once, edges between two
-/// chunks twice (with the same result), and nothing else is remembered.
-inline constexpr std::size_t chunk_size = 256;
+/// transfer() with the target elements worked on by `sweeper`.
+TransferResult transfer_by(const Sweeper& sweeper, std::span<const Field> donors,
+                           const std::shared_ptr<const TriangleMesh>& target,
+                           const TransferOptions& options, const Progress& progress);
+
+/// All groups' components.
+std::size_t component_count(std::span<const Group> groups);
 
 }  // namespace bezel::detail

@@ -16,6 +16,14 @@ Vec2 end_of(const OverlayMesh& donor, const OverlayMesh& target, const Segment& 
   return curve_point((source ? donor : target).edge(part.edge), from ? part.from : part.to);
 }
 
+std::vector<Segment> segments_of(ElementOverlay& overlay, std::int32_t t, OverlayCounts& counts) {
+  OverlayList list;
+  overlay.add(t, list, counts);
+  std::vector<Segment> segments;
+  collect_segments(list[0], segments);
+  return segments;
+}
+
 /// Every T n D of two meshes has a closed boundary, and the pieces of each target edge make up the
 /// edge.
 void expect_closed(const std::shared_ptr<const TriangleMesh>& a,
@@ -27,7 +35,7 @@ void expect_closed(const std::shared_ptr<const TriangleMesh>& a,
   overlay.begin_chunk();
   OverlayCounts counts;
   for (std::size_t t = 0; t < target.element_count(); ++t) {
-    const auto segments = overlay.segments(static_cast<std::int32_t>(t), counts);
+    const auto segments = segments_of(overlay, static_cast<std::int32_t>(t), counts);
     std::array<double, 3> covered{};
     for (std::size_t begin = 0; begin < segments.size();) {
       Vec2 sum;
@@ -73,7 +81,7 @@ TEST(ElementOverlay, IdenticalTrianglesShareTheirSidesOnly) {
   ElementOverlay overlay(donor, target, search);
   overlay.begin_chunk();
   OverlayCounts counts;
-  const auto segments = overlay.segments(0, counts);
+  const auto segments = segments_of(overlay, 0, counts);
   ASSERT_EQ(segments.size(), 3U);
   for (const Segment& s : segments) {
     EXPECT_EQ(s.donor, 0);

@@ -1,0 +1,87 @@
+#pragma once
+// Internal: the moments of all regions of one target element at once, each boundary piece done once
+// for the regions on both its sides.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bezel/transfer/moments.hpp"
+#include "bezel/transfer/overlay.hpp"
+
+namespace bezel::detail {
+
+/// Barycentrics 1 and 2, less 1/3, of the target's triangle and their inverse.
+struct TargetPlace {
+  Vec2 centre, first, second;  ///< coordinates (dot(first, x - centre), dot(second, x - centre))
+  Vec2 along_first, along_second;  ///< columns of the inverse
+  double area;                     ///< of the plane per unit of the coordinates
+};
+
+inline constexpr int max_batch_degree = 3;  ///< of the pieces
+
+/// The boundary pieces of one target element and what they add up to.
+struct PieceBatch {
+  std::size_t count = 0, stride = 0;  ///< stride: count, padded
+  std::vector<double> from, to;       ///< [piece] parameters on its curve, either order
+  std::vector<double> x, y;           ///< [control point][piece] of the curves
+  std::size_t width = 0;              ///< numbers per piece and per region
+  std::vector<double> moments;        ///< [piece][n]
+  /// [region][n]: moments about the target's centre in its coordinates, n = triangle_index(degree,
+  /// a, b), and more.
+  std::vector<double> sums;
+  std::size_t open = 0;  ///< n: by how much the pieces fail to close, first coordinate; + 1: second
+  std::size_t area = 0;  ///< n: the area, in units of area_unit
+  double area_unit = 1;
+  void resize(std::size_t pieces, int degree);
+  const double* region(std::size_t i) const { return sums.data() + i * width; }
+};
+
+/// Fills batch.sums.
+/// @param table    for pieces of one degree, at most max_batch_degree; the batch's are of this one
+/// @param degree   of the moments: 0, 2, 4 or 6
+/// @param origin   areas of curved pieces are taken about it
+/// @param pieces   batch.count of them, their regions below `regions`
+void region_sums(const PieceTable& table, int degree, const Vec2& origin, const TargetPlace& place,
+                 std::span<const BoundaryPiece> pieces, std::size_t regions, PieceBatch& batch);
+
+/// A region that gets a donor's polynomial.
+struct BatchRegion {
+  const Frame* frame;   ///< of the donor's polynomial
+  const double* donor;  ///< coefficients of the donor's monomials, [component][n], and as many
+                        ///< numbers more as may be read; nullptr: the region gets nothing
+  bool far;  ///< out: not added, for the donor's polynomial is much steeper than the target's
+};
+
+/// Numbers behind a donor's coefficients that add_batch may read.
+inline constexpr std::size_t donor_padding = 16;
+
+/// add_region for the regions of a batch, about the target's centre, of the donors' polynomials
+/// less a constant; the masses are those of the whole polynomials.
+/// @param base  [component] the constants
+/// @param mass  [region][component]
+void add_batch(int degree, const TargetPlace& place, const PieceBatch& batch,
+               std::span<BatchRegion> regions, int components, const double* base, double* product,
+               double* basis, double* mass);
+
+/// What solve_straight takes.
+struct StraightSystem {
+  int degree, components;
+  double area;            ///< of the triangle
+  double covered;         ///< sum of its regions' areas
+  const double* product;  ///< [n][component], as from add_batch
+  const double* basis;    ///< [n]
+  const double* mass;     ///< [component] received
+  const double* base;     ///< [component]
+};
+
+/// The L2 projection on a straight triangle, from moments about its centre: Bernstein coefficients
+/// [n][component] with the masses received.
+/// @return  largest over components of |mass of the result - mass received|
+double solve_straight(const StraightSystem& system, double* coefficients);
+
+/// powers[n][component] += integrals with l0^i l1^j l2^k from those with the monomials.
+/// @param degree  0 .. 2 max_moment_degree
+void powers_from_moments(int degree, int components, const double* moments, double* powers);
+
+}  // namespace bezel::detail

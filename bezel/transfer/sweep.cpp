@@ -1,0 +1,228 @@
+#include "bezel/transfer/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "bezel/base/parallel.hpp"
+#include "bezel/transfer/overlay.hpp"
+
+namespace bezel::detail {
+namespace {
+
+using clock = std::chrono::steady_clock;
+
+/// Uncovered parts below this fraction of an element are rounding.
+constexpr double silent_gap = 1e-10;
+/// Donor area outside the target, and target area without donor for Conserve::total, below this
+/// fraction of the element is rounding of the sums.
+constexpr double outside_rounding = 1e-14;
+
+double seconds_since(clock::time_point start) {
+  return std::chrono::duration<double>(clock::now() - start).count();
+}
+
+struct Worker {
+  Worker(const OverlayMesh& donor, const OverlayMesh& target, const FrontSearch& search,
+         std::span<Group> groups, Uncovered policy)
+      : overlay(donor, target, search), element(donor, target, search, groups, policy) {}
+  ElementOverlay overlay;
+  ElementTransfer element;
+  OverlayList overlays;  // of a chunk's elements
+
+  void find_overlays(std::span<const std::int32_t> elements, OverlayCounts& counts) {
+    overlay.begin_chunk();
+    overlays.clear();
+    for (const std::int32_t t : elements) overlay.add(t, overlays, counts);
+  }
+};
+
+/// Hands out workers to the running bodies of a parallel loop: at most one per thread is ever made.
+class WorkerPool {
+ public:
+  explicit WorkerPool(std::function<std::unique_ptr<Worker>()> make) : make_(std::move(make)) {}
+  std::unique_ptr<Worker> take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return make_();
+    auto worker = std::move(free_.back());
+    free_.pop_back();
+    return worker;
+  }
+  void give(std::unique_ptr<Worker> worker) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(worker));
+  }
+
+ private:
+  std::function<std::unique_ptr<Worker>()> make_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Worker>> free_;
+};
+
+std::string uncovered_message(const std::vector<std::pair<ElementId, double>>& elements,
+                              double area) {
+  std::string message = "the donor mesh does not cover the target mesh: area " +
+                        fmt::format("{:.3g}", area) + " in " + std::to_string(elements.size()) +
+                        (elements.size() == 1 ? " triangle (" : " triangles (");
+  const std::size_t shown = std::min<std::size_t>(elements.size(), 5);
+  for (std::size_t i = 0; i < shown; ++i) {
+    if (i > 0) message += ", ";
+    message +=
+        std::to_string(elements[i].first.value) + ": " + fmt::format("{:.3g}", elements[i].second);
+  }
+  if (shown < elements.size()) message += ", ...";
+  return message +
+         "); use extend to continue the nearest donor polynomial there, or zero to count the field "
+         "as 0";
+}
+
+}  // namespace
+
+std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayMesh& target,
+                                        const FrontSearch& search, std::span<Group> groups,
+                                        std::span<const std::int32_t> elements,
+                                        const TransferOptions& options, const Progress& progress,
+                                        const VisitBlocks& visit) {
+  const std::size_t components = component_count(groups);
+  const std::size_t chunks = (elements.size() + chunk_size - 1) / chunk_size;
+  std::vector<ChunkResult> results(chunks);
+  WorkerPool pool(
+      [&] { return std::make_unique<Worker>(donor, target, search, groups, options.uncovered); });
+  std::mutex progress_mutex;
+  std::size_t chunks_done = 0;
+  parallel_for(
+      chunks,
+      [&](std::size_t chunk) {
+        auto worker = pool.take();
+        ChunkResult& result = results[chunk];
+        result.made.assign(components, 0.0);
+        std::vector<double> made_here;
+        ElementBlocks blocks;
+        const std::size_t begin = chunk * chunk_size,
+                          end = std::min(elements.size(), (chunk + 1) * chunk_size);
+        const auto t0 = clock::now();
+        worker->find_overlays(elements.subspan(begin, end - begin), result.counts);
+        const auto t1 = clock::now();
+        for (std::size_t i = begin; i < end; ++i) {
+          const std::int32_t t = elements[i];
+          made_here.assign(components, 0.0);
+          const ElementOutcome outcome = worker->element.process(
+              t, worker->overlays[i - begin], result.given, made_here, visit ? &blocks : nullptr);
+          if (visit) visit(i, t, blocks);
+          for (std::size_t c = 0; c < components; ++c) result.made[c] += made_here[c];
+          if (options.conserve == Conserve::total &&
+              outcome.uncovered_area >
+                  outside_rounding * target.element_area[static_cast<std::size_t>(t)])
+            result.element_made.add(t, made_here);
+          result.solve += outcome.solve_seconds;
+          result.counts.pairs += outcome.pairs;
+          result.max_partition_residual =
+              std::max(result.max_partition_residual, outcome.partition_residual);
+          result.max_joint_gap = std::max(result.max_joint_gap, outcome.max_joint_gap);
+          result.max_mass_defect = std::max(result.max_mass_defect, outcome.max_mass_defect);
+          if (outcome.uncovered_area >
+              silent_gap * target.element_area[static_cast<std::size_t>(t)]) {
+            result.uncovered.push_back({ElementId(t), outcome.uncovered_area});
+          }
+          result.uncovered_area += outcome.uncovered_area;
+          if (outcome.inconsistent) {
+            ++result.inconsistent_count;
+            if (result.inconsistent < 0) result.inconsistent = t;
+          }
+        }
+        result.overlay = std::chrono::duration<double>(t1 - t0).count();
+        result.integrate = seconds_since(t1) - result.solve;
+        pool.give(std::move(worker));
+        if (progress) {
+          const std::lock_guard lock(progress_mutex);
+          tell(progress, static_cast<double>(++chunks_done) / static_cast<double>(chunks));
+        }
+      },
+      options.threads);
+
+  return results;
+}
+
+Swept balance(std::span<const ChunkResult> chunks, std::span<const double> donor_area,
+              std::size_t components, Uncovered policy) {
+  Swept swept;
+  TransferReport& report = swept.report;
+  std::vector<double>& given_area = swept.given_area;
+  std::vector<double>& given_mass = swept.given_mass;
+  given_area.assign(donor_area.size(), 0.0);
+  given_mass.assign(donor_area.size() * components, 0.0);
+  swept.made.assign(components, 0.0);
+  std::int32_t inconsistent = -1;
+  std::int64_t inconsistent_count = 0;
+  for (const ChunkResult& r : chunks) {
+    for (std::size_t i = 0; i < r.given.donor.size(); ++i) {
+      const auto d = static_cast<std::size_t>(r.given.donor[i]);
+      given_area[d] += r.given.area[i];
+      for (std::size_t c = 0; c < components; ++c) {
+        given_mass[d * components + c] += r.given.mass[i * components + c];
+      }
+    }
+    for (std::size_t c = 0; c < components; ++c) swept.made[c] += r.made[c];
+    report.pairs += r.counts.pairs;
+    report.crossings += r.counts.crossings;
+    report.tangencies += r.counts.tangencies;
+    report.overlaps += r.counts.overlaps;
+    report.unresolved += r.counts.unresolved;
+    report.uncovered_area += r.uncovered_area;
+    report.uncovered_elements.insert(report.uncovered_elements.end(), r.uncovered.begin(),
+                                     r.uncovered.end());
+    report.max_partition_residual =
+        std::max(report.max_partition_residual, r.max_partition_residual);
+    report.max_joint_gap =
+        std::max({report.max_joint_gap, r.max_joint_gap, r.counts.max_joint_gap});
+    swept.max_mass_defect = std::max(swept.max_mass_defect, r.max_mass_defect);
+    report.seconds.overlay += r.overlay;
+    report.seconds.integrate += r.integrate;
+    report.seconds.solve += r.solve;
+    inconsistent_count += r.inconsistent_count;
+    if (r.inconsistent >= 0 && inconsistent < 0) inconsistent = r.inconsistent;
+  }
+  std::sort(report.uncovered_elements.begin(), report.uncovered_elements.end());
+  if (inconsistent >= 0) {
+    throw NumericsError(
+        "the common refinement is inconsistent at target triangle " + std::to_string(inconsistent) +
+        " and " + std::to_string(inconsistent_count - 1) + " others (largest open joint " +
+        std::to_string(report.max_joint_gap) + " of the smaller element); no field was made");
+  }
+  if (!report.uncovered_elements.empty() && policy == Uncovered::error) {
+    double area = 0.0;
+    for (const auto& entry : report.uncovered_elements) area += entry.second;
+    throw UncoveredError(uncovered_message(report.uncovered_elements, area),
+                         report.uncovered_elements, area);
+  }
+
+  for (std::size_t d = 0; d < donor_area.size(); ++d) {
+    const double rest = donor_area[d] - given_area[d];
+    if (rest <= outside_rounding * donor_area[d]) continue;
+    report.outside_area += rest;
+    swept.outside.push_back(static_cast<std::int32_t>(d));
+  }
+  return swept;
+}
+
+Swept sweep(const OverlayMesh& donor, const OverlayMesh& target, std::span<Group> groups,
+            const TransferOptions& options, const Progress& progress, const VisitBlocks& visit) {
+  const FrontSearch search(donor);
+  const std::vector<ChunkResult> chunks = sweep_elements(
+      donor, target, search, groups, target.spatial_order(), options, progress, visit);
+  return balance(chunks, donor.element_area, component_count(groups), options.uncovered);
+}
+
+std::size_t component_count(std::span<const Group> groups) {
+  std::size_t components = 0;
+  for (const Group& g : groups) components += static_cast<std::size_t>(g.components);
+  return components;
+}
+
+}  // namespace bezel::detail
