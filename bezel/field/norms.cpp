@@ -129,9 +129,18 @@ std::vector<double> integral(const Field& field, int threads) {
 }
 
 std::vector<double> integral_abs(const Field& field, int threads) {
+  return integral_abs(field, element_integrals(field, threads), threads);
+}
+
+std::vector<double> integral_abs(const Field& field, std::span<const double> element_integrals,
+                                 int threads) {
   const Space& space = field.space();
   const std::size_t n = at(field.components());
-  std::vector<double> out = element_integrals(field, threads);
+  if (element_integrals.size() != field.mesh().element_count() * n)
+    throw InputError(fmt::format("found {} element integrals, expected {} for field '{}'",
+                                 element_integrals.size(), field.mesh().element_count() * n,
+                                 field.name()));
+  std::vector<double> out(element_integrals.begin(), element_integrals.end());
   const RuleTable rules(
       space, [&](int p) { return std::min(field_detail::integrand_degree(space, p) + 4, 40); });
   std::array<TriangleRule, static_cast<std::size_t>(Space::max_degree) + 1> split;

@@ -32,21 +32,6 @@ void solve_in_place(std::size_t size, const double* lower, const double* inverse
   for (std::size_t i = 0; i < n; ++i) x[i] *= scale;
 }
 
-/// The target's polynomials may stay on the triangle they were computed on when the space's frame
-/// is that triangle, up to the rounding of barycentric coordinates at its place in the plane.
-bool is_frame(const Frame& frame, const std::array<Vec2, 3>& corners) {
-  double slope = 0.0;
-  for (const Vec2& g : frame.gradient) slope = std::max({slope, std::abs(g[0]), std::abs(g[1])});
-  const double reach = std::max(std::abs(frame.centre[0]), std::abs(frame.centre[1]));
-  double largest = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Lambda l = frame.lambda(corners[k]);
-    for (std::size_t i = 0; i < 3; ++i)
-      largest = std::max(largest, std::abs(l[i] - (i == k ? 1.0 : 0.0)));
-  }
-  return largest <= 0x1p-51 * (2.0 + reach * slope);
-}
-
 }  // namespace
 
 const MassRule& ElementTransfer::mass_rule(int degree) {
@@ -64,7 +49,8 @@ bool ElementTransfer::factorize(std::size_t n, Factor& factor) {
   return true;
 }
 
-const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int32_t t) {
+const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int32_t t,
+                                                       std::span<const double> whole) {
   const int p = g.target_space->degree(ElementId(t));
   const int gd = target_.degree;
   const auto n = static_cast<std::size_t>(bernstein::triangle_size(p));
@@ -81,7 +67,7 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
     reference_factor_.integrals.assign(n, area / static_cast<double>(n));
     return reference_factor_;
   }
-  if (moment_factor(g, t)) return f;
+  if (moment_factor(g, t, whole)) return f;
   const int degree = g.target_mapped ? 2 * p + 2 * (gd - 1) : 2 * p * gd + 2 * (gd - 1);
   const MassRule& points = mass_rule(degree);
   f.lower.assign(n * n, 0.0);
@@ -108,12 +94,6 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
   return f;
 }
 
-bool ElementTransfer::in_other_frame(const Group& g, std::int32_t t) const {
-  return g.target_space->basis() == Basis::physical &&
-         !(target_.degree == 1 &&
-           is_frame(g.target_space->frame(ElementId(t)), target_.corners(t)));
-}
-
 bool ElementTransfer::finish_straight(std::size_t i, std::int32_t t, std::span<const double> mass,
                                       double area, std::span<double> result,
                                       ElementOutcome& outcome) {
@@ -122,9 +102,7 @@ bool ElementTransfer::finish_straight(std::size_t i, std::int32_t t, std::span<c
   if (target_.degree != 1 || have_moments_[i] == 0 ||
       std::abs(area - own_area) > full_cover * own_area)
     return false;
-  for (const double m : sums_[i].basis)
-    if (m != 0.0) return false;  // extensions
-  if (in_other_frame(g, t)) return false;
+  if (extended_[i] != 0 || g.in_other_frame(t)) return false;
   const Accumulators& sums = moment_sums_[i];
   const double defect =
       solve_straight({g.target_space->degree(ElementId(t)), g.components, own_area, area,
@@ -135,18 +113,19 @@ bool ElementTransfer::finish_straight(std::size_t i, std::int32_t t, std::span<c
 }
 
 void ElementTransfer::finish(const Group& g, std::int32_t t, const Accumulators& sums,
-                             std::span<const double> mass, std::span<const double> base,
-                             double area, std::span<double> result, ElementOutcome& outcome) {
+                             std::span<const double> whole, std::span<const double> mass,
+                             std::span<const double> base, double area, std::span<double> result,
+                             ElementOutcome& outcome) {
   const int p = g.target_space->degree(ElementId(t));
   const auto n = static_cast<std::size_t>(bernstein::triangle_size(p));
   const std::size_t nc = mass.size();
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
   const bool full = std::abs(area - own_area) <= full_cover * own_area;
-  const Factor& f = factor(g, t);
+  const Factor& f = factor(g, t, whole);
   const auto factors = multinomials(p);
   std::vector<double>& rhs = scratch_;
   std::array<Lambda, 3> to_frame{};  // the space's frame seen from the triangle computed on
-  const bool other_frame = in_other_frame(g, t);
+  const bool other_frame = g.in_other_frame(t);
   if (other_frame) {
     const auto corners = g.target_space->frame(ElementId(t)).corners();
     for (std::size_t k = 0; k < 3; ++k)

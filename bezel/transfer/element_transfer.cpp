@@ -33,8 +33,10 @@ ElementTransfer::ElementTransfer(const OverlayMesh& donor, const OverlayMesh& ta
       policy_(policy),
       sums_(groups.size()),
       moment_sums_(groups.size()),
+      whole_(groups.size()),
       base_(groups.size()),
       have_moments_(groups.size()),
+      extended_(groups.size()),
       batched_(groups.size()) {
   for (std::size_t i = 0; i < groups.size(); ++i) batched_[i] = can_batch(groups[i]) ? 1 : 0;
 }
@@ -310,6 +312,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
         static_cast<std::size_t>(g.components));
     components += static_cast<std::size_t>(g.components);
     have_moments_[i] = 0;
+    extended_[i] = 0;
   }
   const auto corners = target_.corners(t);
   origin_ = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
@@ -324,21 +327,31 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
   const bool summed = shape_regions(t, own, first_batched, outcome);
   double total = 0.0;
   double extended = 0.0;
-  const std::size_t first_given = given.mass.size();
-  for (std::size_t k = 0; k < own.donors.size(); ++k) {
+  const std::size_t regions = own.donors.size(), first_given = given.donor.size();
+  given.target.resize(first_given + regions, t);
+  given.donor.resize(first_given + regions);
+  given.area.resize(first_given + regions);
+  std::size_t pairs = first_given;
+  for (std::size_t k = 0; k < regions; ++k) {
     const std::int32_t d = own.donors[k];
-    total += area_[k];
+    const double area = area_[k];
+    total += area;
     if (d == exterior) {
-      outcome.uncovered_area = std::max(area_[k], 0.0);
+      outcome.uncovered_area = std::max(area, 0.0);
       continue;
     }
-    outcome.covered_area += area_[k];
-    given.target.push_back(t);
-    given.donor.push_back(d);
-    given.area.push_back(area_[k]);
-    ++outcome.pairs;
+    outcome.covered_area += area;
+    given.donor[pairs] = d;
+    given.area[pairs] = area;
+    ++pairs;
   }
-  given.mass.resize(first_given + static_cast<std::size_t>(outcome.pairs) * components);
+  if (pairs < first_given + regions) {
+    given.target.resize(pairs);
+    given.donor.resize(pairs);
+    given.area.resize(pairs);
+  }
+  outcome.pairs = static_cast<std::int32_t>(pairs - first_given);
+  given.mass.resize(pairs * components);
 
   std::size_t c0 = 0;
   for (std::size_t i = 0; i < groups_.size(); ++i) {
@@ -351,7 +364,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
       begin_moments(i);
       add_batched(i, t, own, summed && i == first_batched, region_mass_);
     }
-    double* to = given.mass.data() + first_given + c0;
+    double* to = given.mass.data() + first_given * components + c0;
     for (std::size_t k = 0; k < own.donors.size(); ++k) {
       const std::int32_t d = own.donors[k];
       const double area = area_[k];
@@ -360,6 +373,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
         const bool silent = std::abs(area) <= silent_gap * own_area;
         if (!(silent || policy_ == Uncovered::extend)) continue;
         if (i == 0) extended += area;
+        extended_[i] = 1;
         const auto run = run_of(own, k);
         if (blocks != nullptr) {
           extension_blocks(g, t, run, area, run_shape(run).centre, sums_[i], *blocks);
@@ -401,7 +415,9 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
     c0 += nc;
     if (finish_straight(i, t, mass, integrated, result, outcome)) continue;
     if (have_moments_[i] != 0) moments_to_powers(i, t);
-    finish(groups_[i], t, sums_[i], mass, base_[i], integrated, result, outcome);
+    std::span<const double> whole;
+    if (outcome.uncovered_area == 0.0 && batch) whole = whole_[i];
+    finish(groups_[i], t, sums_[i], whole, mass, base_[i], integrated, result, outcome);
   }
   if (timed) {
     outcome.solve_seconds =

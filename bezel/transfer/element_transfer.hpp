@@ -97,11 +97,15 @@ class ElementTransfer {
   void add_pair_moments(const Group& g, std::int32_t t, std::int32_t d, const RunShape& shape,
                         const double* base, Accumulators& sums, std::span<double> mass);
   void moments_to_powers(std::size_t i, std::int32_t t);
-  bool moment_factor(const Group& g, std::int32_t t);
+  /// Sets moments_ to those of target element t in its coordinates.
+  void element_moments(const Group& g, std::int32_t t, int degree);
+  bool moment_factor(const Group& g, std::int32_t t, std::span<const double> whole);
   static bool can_batch(const Group& g);
   static TargetPlace target_place(const Group& g, std::int32_t t);
   void begin_moments(std::size_t group);
   void fill_batch(std::span<const BoundaryPiece> pieces);
+  template <std::size_t points>
+  void fill_curves(std::span<const BoundaryPiece> pieces);
   /// Notes the regions' areas; returns whether the batch now holds the sums of group `first`.
   bool shape_regions(std::int32_t t, const ElementPieces& own, std::size_t first,
                      ElementOutcome& outcome);
@@ -130,17 +134,18 @@ class ElementTransfer {
                      ElementBlocks& blocks, ElementOutcome& outcome);
   /// Solves for mass.size() components into result, [n][component].
   /// @param base  [component] constants that the sums lack
+  /// @param whole  as for factor()
   void finish(const Group& g, std::int32_t t, const Accumulators& sums,
-              std::span<const double> mass, std::span<const double> base, double area,
-              std::span<double> result, ElementOutcome& outcome);
+              std::span<const double> whole, std::span<const double> mass,
+              std::span<const double> base, double area, std::span<double> result,
+              ElementOutcome& outcome);
   /// The same for group i on a covered straight element, when it went by moments alone.
   bool finish_straight(std::size_t i, std::int32_t t, std::span<const double> mass, double area,
                        std::span<double> result, ElementOutcome& outcome);
-  /// Whether the space's frame is another than the triangle computed on.
-  bool in_other_frame(const Group& g, std::int32_t t) const;
   const MassRule& mass_rule(int degree);
   static bool factorize(std::size_t n, Factor& factor);
-  const Factor& factor(const Group& g, std::int32_t t);
+  /// @param whole  moments of the element up to twice the degree, when known
+  const Factor& factor(const Group& g, std::int32_t t, std::span<const double> whole);
   /// Makes room for `more` points in the arrays.
   void reserve_points(std::size_t more);
   void push(double w, double tu, double tv, double du, double dv) {
@@ -191,8 +196,12 @@ class ElementTransfer {
   std::vector<Lambda> start_;
   std::vector<InverseResult> inverse_;
   std::vector<Accumulators> sums_, moment_sums_;
+  std::vector<std::vector<double>> whole_;  // by group, of batched ones on curved elements: moments
+                                            // of all regions together
+  std::vector<double> powers_;
   std::vector<std::vector<double>> base_;   // by group, [component]: taken off before integrating
   std::vector<std::uint8_t> have_moments_;  // by group: for this element
+  std::vector<std::uint8_t> extended_;      // by group: into what no donor covers of this element
   std::vector<std::uint8_t> batched_;       // by group: goes by add_batched
   std::vector<double> masses_;
   std::vector<double> scratch_;

@@ -1,6 +1,7 @@
 #include "bezel/transfer/group.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "bezel/transfer/accumulate.hpp"
 #include "bezel/transfer/moments.hpp"
@@ -9,18 +10,22 @@
 namespace bezel::detail {
 namespace {
 
-/// The triangle of the corners serves as a frame when it has at least this fraction of the
-/// element's area.
-constexpr double fitting_corners = 0.5;
+/// The target's polynomials may stay on the triangle they were computed on when the space's frame
+/// is that triangle, up to the rounding of barycentric coordinates at its place in the plane.
+bool is_frame(const Frame& frame, const std::array<Vec2, 3>& corners) {
+  double slope = 0.0;
+  for (const Vec2& g : frame.gradient) slope = std::max({slope, std::abs(g[0]), std::abs(g[1])});
+  const double reach = std::max(std::abs(frame.centre[0]), std::abs(frame.centre[1]));
+  double largest = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Lambda l = frame.lambda(corners[k]);
+    for (std::size_t i = 0; i < 3; ++i)
+      largest = std::max(largest, std::abs(l[i] - (i == k ? 1.0 : 0.0)));
+  }
+  return largest <= 0x1p-51 * (2.0 + reach * slope);
+}
 
 }  // namespace
-
-bool corners_fit(const OverlayMesh& target, std::int32_t t) {
-  if (target.degree == 1) return true;
-  const auto corners = target.corners(t);
-  const double corner_area = 0.5 * cross(corners[1] - corners[0], corners[2] - corners[0]);
-  return corner_area >= fitting_corners * target.element_area[static_cast<std::size_t>(t)];
-}
 
 Frame affine_frame(const std::array<Vec2, 3>& p) {
   Frame frame;
@@ -167,11 +172,20 @@ void Group::make_frames(const OverlayMesh& donor, const OverlayMesh& target) {
                            : affine_frame(donor.corners(static_cast<std::int32_t>(e)));
     }
   }
+  if (target_space->basis() == Basis::physical && target.degree == 1) {
+    other_frame.resize(target.element_count());
+    for (std::size_t e = 0; e < other_frame.size(); ++e) {
+      const bool same =
+          target.degree == 1 &&
+          is_frame(target_space->frame(ElementId(e)), target.corners(static_cast<std::int32_t>(e)));
+      other_frame[e] = same ? 0 : 1;
+    }
+  }
   if (!target_mapped) {
     target_frame.resize(target.element_count());
     for (std::size_t e = 0; e < target_frame.size(); ++e) {
       const auto t = static_cast<std::int32_t>(e);
-      target_frame[e] = target_space->basis() == Basis::reference || corners_fit(target, t)
+      target_frame[e] = target_space->basis() == Basis::reference || target.degree == 1
                             ? affine_frame(target.corners(t))
                             : target_space->frame(ElementId(e));
     }

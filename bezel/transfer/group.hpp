@@ -21,10 +21,6 @@ struct DonorDegree {
   int uniform = -1;  ///< -1 when they differ
 };
 
-/// Whether the triangle of an element's corners is nearly the element: polynomials are then
-/// computed on it.
-bool corners_fit(const OverlayMesh& target, std::int32_t t);
-
 /// The components of all donor fields that share a donor space and go to the same target space.
 struct Group {
   Group(const OverlayMesh& donor, const OverlayMesh& target, std::span<const Field* const> fields,
@@ -48,13 +44,14 @@ struct Group {
   bool donor_mapped, target_mapped;  ///< polynomial in reference coordinates of a curved element
   std::vector<Frame>
       donor_frame;  ///< affine triangles of the donor's polynomials that are not mapped
-  /// Affine triangles on which the target's polynomials are computed: the triangle of the element's
-  /// corners where it fits the element (mass matrices are well conditioned there), else the space's
-  /// own frame.
+  /// Affine triangles on which the target's polynomials are computed: straight elements themselves,
+  /// else the space's own frames.
   std::vector<Frame> target_frame;
-  std::vector<double> scaled;      ///< donor coefficients times multinomials, per element
-                                   ///< [component][n]; of basis functions per degree
-  std::vector<double> donor_mass;  ///< per element [component]
+  std::vector<std::uint8_t> other_frame;  ///< whether the space's own frame is another one, by
+                                          ///< target element; empty when the space has none
+  std::vector<double> scaled;             ///< donor coefficients times multinomials, per element
+                                          ///< [component][n]; of basis functions per degree
+  std::vector<double> donor_mass;         ///< per element [component]
   /// Coefficients of the monomials in the barycentrics less 1/3, per element [component][n]: of
   /// donors that are not mapped and have at most max_moment_degree.
   std::vector<double> powers;
@@ -65,6 +62,9 @@ struct Group {
     return powers.data() + donor_space->offset(ElementId(e)) * static_cast<std::size_t>(components);
   }
   std::span<double> target_out(std::int32_t e);
+  bool in_other_frame(std::int32_t t) const {
+    return !other_frame.empty() && other_frame[static_cast<std::size_t>(t)] != 0;
+  }
 
  private:
   void make_powers(std::size_t elements);

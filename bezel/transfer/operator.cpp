@@ -229,8 +229,8 @@ TransferResult TransferOperator::transfer(std::span<const Field> donors, int thr
     for (std::size_t i = 0; i < m.outside.size(); ++i) add(m.outside[i], m.lost[i], outside);
     for (const OperatorRows::MadeMass& part : m.made) add(part.donor, part.mass, made);
     const std::vector<double> defect(nc, applied.max_mass_defect);
-    detail::append_reports(f, applied.field, outside, made, {}, defect, threads,
-                           result.report.fields);
+    detail::append_reports(f, element_integrals(f, threads), applied.field, outside, made, {},
+                           defect, threads, result.report.fields);
     result.fields.push_back(applied.field);
   }
   result.report.seconds.total =

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "bezel/base/parallel.hpp"
+#include "bezel/numeric/sum.hpp"
 #include "bezel/transfer/overlay.hpp"
 
 namespace bezel::detail {
@@ -225,24 +226,25 @@ std::size_t component_count(std::span<const Group> groups) {
   return components;
 }
 
-void append_reports(const Field& donor, const Field& moved, std::span<const double> outside,
-                    std::span<const double> made, std::span<const double> spread,
-                    std::span<const double> element_defect, int threads,
-                    std::vector<FieldReport>& out) {
-  const auto before = integral(donor, threads);
+void append_reports(const Field& donor, std::span<const double> donor_masses, const Field& moved,
+                    std::span<const double> outside, std::span<const double> made,
+                    std::span<const double> spread, std::span<const double> element_defect,
+                    int threads, std::vector<FieldReport>& out) {
   const auto after = integral(moved, threads);
-  const auto size = integral_abs(donor, threads);
-  for (std::size_t c = 0; c < before.size(); ++c) {
+  const auto size = integral_abs(donor, donor_masses, threads);
+  std::vector<double> masses(donor.mesh().element_count());
+  for (std::size_t c = 0; c < after.size(); ++c) {
+    for (std::size_t e = 0; e < masses.size(); ++e) masses[e] = donor_masses[e * after.size() + c];
     FieldReport line;
     line.name = donor.name();
     line.component = static_cast<int>(c);
-    line.mass_before = before[c];
+    line.mass_before = sum(masses);
     line.mass_after = after[c];
     line.mass_outside = outside[c];
     line.mass_made = made[c];
     if (!spread.empty()) line.mass_spread = spread[c];
     const double defect =
-        after[c] - (before[c] - line.mass_outside + line.mass_made + line.mass_spread);
+        after[c] - (line.mass_before - line.mass_outside + line.mass_made + line.mass_spread);
     const double scale = size[c] > 0.0 ? size[c] : 1.0;
     line.relative_mass_defect = std::abs(defect) / scale;
     line.max_element_defect = element_defect[c] / scale;

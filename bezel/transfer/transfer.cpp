@@ -264,7 +264,14 @@ TransferResult detail::transfer_by(const Sweeper& sweeper, std::span<const Field
       std::vector<double> element_defect(own, swept.max_mass_defect);
       for (std::size_t c = 0; !continuous.empty() && c < own; ++c)
         element_defect[c] = continuous[k].max_element_change[first + c];
-      detail::append_reports(donors[i], *fields[i], std::span(outside).subspan(c0 + first, own),
+      std::vector<double> donor_masses;
+      for (std::size_t e = 0; e < donor.element_count(); ++e) {
+        const auto of_element = g.donor_mass.begin() + static_cast<std::ptrdiff_t>(e * nc + first);
+        donor_masses.insert(donor_masses.end(), of_element,
+                            of_element + static_cast<std::ptrdiff_t>(own));
+      }
+      detail::append_reports(donors[i], donor_masses, *fields[i],
+                             std::span(outside).subspan(c0 + first, own),
                              std::span(swept.made).subspan(c0 + first, own), spread_mass,
                              element_defect, options.threads, field_reports[i]);
       for (std::size_t c = 0; c < own; ++c) {
