@@ -213,10 +213,12 @@ void check_usage(const TransferCommand& options) {
   const bool weighted = !options.weight.empty() || !options.density.empty();
   if (!options.matrix.empty() && weighted)
     throw UsageError("--matrix: not with --weight or --density");
-  if ((!options.matrix.empty() || weighted) &&
-      (options.continuity == "cg" || options.bounds != "none" || options.conserve != "covered")) {
-    throw UsageError(std::string(weighted ? "--weight and --density" : "--matrix") +
-                     ": not with --continuity cg, --bounds or --conserve total");
+  if (!options.matrix.empty() && (options.continuity == "cg" || options.conserve != "covered"))
+    throw UsageError("--matrix: not with --continuity cg or --conserve total");
+  if (weighted &&
+      (options.keep_boundary || options.bounds != "none" || options.conserve != "covered")) {
+    throw UsageError(
+        "--weight and --density: not with --keep-boundary, --bounds or --conserve total");
   }
   if (options.continuity != "cg") {
     if (options.keep_boundary) throw UsageError("--keep-boundary needs --continuity cg");
@@ -269,13 +271,15 @@ TransferResult move(const TransferCommand& options, std::span<const Field> field
                     std::optional<TransferOperator>& matrix, const Progress& progress) {
   if (processes != nullptr) return processes->transfer(fields, target, how_to, progress);
   if (options.matrix.empty()) return transfer(fields, target, how_to, progress);
-  matrix.emplace(fields.front().space_ptr(), target, how_to, progress);
+  TransferOptions linear = how_to;
+  linear.bounds = {};
+  matrix.emplace(fields.front().space_ptr(), target, linear, progress);
   for (const Field& f : fields) {
     if (!matrix->accepts(f.space()))
       throw InputError("donor mesh: field '" + f.name() + "' has another degree or basis than '" +
                        fields.front().name() + "', expected fields that share one matrix");
   }
-  return matrix->transfer(fields, how_to.threads);
+  return matrix->transfer(fields, how_to.bounds, how_to.threads);
 }
 
 int run(const TransferCommand& options, const Context& context) {

@@ -91,10 +91,6 @@ std::vector<double> integral(const Field& field, int threads = 0);
 /// sign, elsewhere by quadrature on 16 pieces of the element (relative error about 1e-3 of such an
 /// element's share).
 std::vector<double> integral_abs(const Field& field, int threads = 0);
-/// The same where the element_integrals() of the field are known already.
-/// @throws InputError when their number is wrong
-std::vector<double> integral_abs(const Field& field, std::span<const double> element_integrals,
-                                 int threads = 0);
 /// Integral of each component over each element, shape (elements, components), exact up to
 /// rounding.
 std::vector<double> element_integrals(const Field& field, int threads = 0);

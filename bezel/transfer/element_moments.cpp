@@ -13,6 +13,9 @@
 namespace bezel::detail {
 namespace {
 
+/// Donors smaller than this fraction of the target's area get their areas from rays of their own.
+constexpr double small_area = 1.0 / 64.0;
+
 Vec2 mix(const Vec2& a, const Vec2& b, double s) {
   return (1.0 - s) * a + s * b;
 }
@@ -95,7 +98,8 @@ ElementTransfer::RunShape ElementTransfer::run_shape(std::span<const Segment> ru
   centre *= 1.0 / static_cast<double>(run.size());
   shape.relative = centre;
   shape.centre = origin_ + centre;
-  shape.gap = norm(sum);
+  bridges_.clear();
+  shape.gap = loose_ ? bridge_joints() : norm(sum);
   double twice = 0.0;
   Vec2* p = piece_control_.data();
   for (const int degree : piece_degree_) {
@@ -194,7 +198,7 @@ void ElementTransfer::fill_batch(std::span<const BoundaryPiece> pieces) {
   return fill_curves<4>(pieces);
 }
 
-std::span<const Segment> ElementTransfer::run_of(const ElementPieces& own, std::size_t k) {
+std::span<const Segment> ElementTransfer::all_runs(const ElementPieces& own) {
   if (!have_segments_) {
     have_segments_ = true;
     collect_segments(own, segments_);
@@ -205,13 +209,13 @@ std::span<const Segment> ElementTransfer::run_of(const ElementPieces& own, std::
       run_end_.push_back(end);
     }
   }
-  const std::size_t begin = k == 0 ? 0 : run_end_[k - 1];
-  return std::span<const Segment>(segments_).subspan(begin, run_end_[k] - begin);
+  return segments_;
 }
 
 bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, std::size_t first,
                                     ElementOutcome& outcome) {
   area_.clear();
+  bridged_.assign(own.donors.size(), 0);
   const bool batch = donor_.degree == target_.degree && target_.degree <= max_batch_degree;
   if (!batch) {
     for (std::size_t k = 0; k < own.donors.size(); ++k) {
@@ -233,26 +237,26 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
   region_sums(piece_table(target_.degree, degree), degree, origin_, place, own.pieces,
               own.donors.size(), batch_);
   for (std::size_t k = 0; k < own.donors.size(); ++k) {
+    const std::int32_t d = own.donors[k];
+    // About a place in the target element, areas are known to its rounding.
+    const bool small =
+        d != exterior && donor_.element_area[static_cast<std::size_t>(d)] <
+                             small_area * target_.element_area[static_cast<std::size_t>(t)];
+    if (small || loose_) {
+      const RunShape shape = run_shape(run_of(own, k));
+      area_.push_back(shape.area);
+      bridged_[k] = bridges_.empty() ? 0 : 1;
+      note_region(t, d, shape.area, shape.gap, outcome);
+      continue;
+    }
+    bridges_.clear();
     const double* sums = batch_.region(k);
     area_.push_back(sums[batch_.area] * batch_.area_unit);
     const double* open = sums + batch_.open;
     const double gap = norm(open[0] * place.along_first + open[1] * place.along_second);
-    note_region(t, own.donors[k], area_.back(), gap, outcome);
+    note_region(t, d, area_.back(), gap, outcome);
   }
   return summed;
-}
-
-void ElementTransfer::note_region(std::int32_t t, std::int32_t d, double area, double gap,
-                                  ElementOutcome& outcome) const {
-  double size = target_.element_diameter[static_cast<std::size_t>(t)];
-  double smaller = target_.element_area[static_cast<std::size_t>(t)];
-  if (d != exterior) {
-    size = std::min(size, donor_.element_diameter[static_cast<std::size_t>(d)]);
-    smaller = std::min(smaller, donor_.element_area[static_cast<std::size_t>(d)]);
-  }
-  outcome.max_joint_gap = std::max(outcome.max_joint_gap, gap / size);
-  if (gap > largest_joint_gap * size || area < -largest_joint_gap * smaller)
-    outcome.inconsistent = true;
 }
 
 void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPieces& own,
@@ -272,9 +276,10 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
     BatchRegion& region = regions_.emplace_back();
     region.donor = nullptr;
     if (d == exterior) continue;
+    if (some == nullptr) some = g.donor_powers(d);
+    if (bridged_[regions_.size() - 1] != 0) continue;
     region.frame = &g.donor_frame[static_cast<std::size_t>(d)];
     region.donor = g.donor_powers(d);
-    if (some == nullptr) some = region.donor;
   }
   // Constants come back whatever the rounding of the moments when they are not integrated at all.
   double* base = base_[i].data();
@@ -289,7 +294,7 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
       for (std::size_t n = 0; n < whole.size(); ++n) whole[n] += batch_.region(k)[n];
   }
   for (std::size_t k = 0; k < regions_.size(); ++k) {
-    if (!regions_[k].far) continue;
+    if (!regions_[k].far && (bridged_[k] == 0 || own.donors[k] == exterior)) continue;
     add_pair_moments(g, t, own.donors[k], run_shape(run_of(own, k)), base, sums,
                      mass.subspan(k * nc, nc));
   }

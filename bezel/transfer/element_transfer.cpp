@@ -37,8 +37,13 @@ ElementTransfer::ElementTransfer(const OverlayMesh& donor, const OverlayMesh& ta
       base_(groups.size()),
       have_moments_(groups.size()),
       extended_(groups.size()),
-      batched_(groups.size()) {
-  for (std::size_t i = 0; i < groups.size(); ++i) batched_[i] = can_batch(groups[i]) ? 1 : 0;
+      batched_(groups.size()),
+      fit_(donor, target, groups.size()),
+      fitted_(groups.size()) {
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    batched_[i] = can_batch(groups[i]) ? 1 : 0;
+    fitted_[i] = batched_[i] == 0 && PairFit::can(groups[i], donor, target) ? 1 : 0;
+  }
 }
 
 void ElementTransfer::Accumulators::reset(std::size_t functions, std::size_t components) {
@@ -89,6 +94,12 @@ void ElementTransfer::boundary_nodes(std::span<const Segment> run, int degree) {
       node.dx = at.derivative * (step * line.weight[i]);
       nodes_.push_back(node);
     }
+  }
+  for (const Bridge& bridge : bridges_) {
+    Node node;
+    node.x = origin_ + bridge.from + 0.5 * bridge.step;
+    node.dx = bridge.step;
+    nodes_.push_back(node);
   }
 }
 
@@ -141,6 +152,17 @@ void ElementTransfer::reference_nodes(const OverlayMesh& mesh, std::int32_t elem
       node.dq = {cross(node.dx, map.dv) * scale, cross(map.du, node.dx) * scale};
       nodes_.push_back(node);
     }
+  }
+  for (const Bridge& bridge : bridges_) {
+    Node node;
+    node.x = origin_ + bridge.from + 0.5 * bridge.step;
+    node.dx = bridge.step;
+    std::array<double, 3> lambda{};
+    if (!invert_map(mesh.degree, mesh.element(element), node.x, lambda, false)) continue;
+    node.q = {lambda[1], lambda[2]};
+    const MapPoint map = map_point(mesh, element, node.q);
+    node.dq = {cross(node.dx, map.dv) / map.det, cross(map.du, node.dx) / map.det};
+    nodes_.push_back(node);
   }
 }
 
@@ -321,9 +343,12 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
   // The regions: shape and area do not depend on the fields.
   const bool batch =
       donor_.degree == target_.degree && target_.degree <= max_batch_degree && blocks == nullptr;
-  const auto first_batched = static_cast<std::size_t>(
-      batch ? std::find(batched_.begin(), batched_.end(), 1) - batched_.begin() : groups_.size());
+  const std::size_t first_batched =
+      batch ? static_cast<std::size_t>(std::find(batched_.begin(), batched_.end(), 1) -
+                                       batched_.begin())
+            : groups_.size();
   have_segments_ = false;
+  loose_ = own.loose();
   const bool summed = shape_regions(t, own, first_batched, outcome);
   double total = 0.0;
   double extended = 0.0;
@@ -364,6 +389,8 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
       begin_moments(i);
       add_batched(i, t, own, summed && i == first_batched, region_mass_);
     }
+    const bool fitted = fitted_[i] != 0 && !own.donors.empty();
+    if (fitted) fit_.begin(i, g, t, all_runs(own), blocks == nullptr);
     double* to = given.mass.data() + first_given * components + c0;
     for (std::size_t k = 0; k < own.donors.size(); ++k) {
       const std::int32_t d = own.donors[k];
@@ -382,13 +409,21 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
         add_extension(g, t, run, area, run_shape(run).centre, sums_[i], here);
         for (std::size_t c = 0; c < nc; ++c) made[c0 + c] += here[c];
       } else if (!batched) {
-        const auto run = run_of(own, k);
-        const RunShape shape = run_shape(run);
-        if (blocks == nullptr && by_moments(g, t, d)) {
-          begin_moments(i);
-          add_pair_moments(g, t, d, shape, base_[i].data(), moment_sums_[i], here);
+        if (fitted && fit_.add(d, run_begin(k), run_end_[k], area, here)) {
+          if (blocks != nullptr) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
         } else {
-          add_pair(g, t, d, run, area, shape.centre, sums_[i], here);
+          const auto run = run_of(own, k);
+          const RunShape shape = run_shape(run);
+          if (blocks == nullptr && by_moments(g, t, d)) {
+            begin_moments(i);
+            add_pair_moments(g, t, d, shape, base_[i].data(), moment_sums_[i], here);
+          } else if (fitted) {
+            // The masses of all pairs by one rule: its errors cancel between neighbours.
+            fitted_mass_.assign(nc, 0.0);
+            add_pair(g, t, d, run, area, shape.centre, sums_[i], fitted_mass_);
+          } else {
+            add_pair(g, t, d, run, area, shape.centre, sums_[i], here);
+          }
         }
       }
       for (std::size_t c = 0; c < nc; ++c) masses_[c0 + c] += here[c];
@@ -397,10 +432,14 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
       to += components;
       if (blocks != nullptr) keep_pair(d, sums_[i], here, *blocks);
     }
+    if (fitted) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
     c0 += nc;
   }
+  if (loose_ && blocks == nullptr && components > 0) give_strips(t, own, components, given, made);
   outcome.partition_residual = std::abs(total - own_area) / own_area;
-  if (outcome.partition_residual > largest_joint_gap) outcome.inconsistent = true;
+  if (outcome.partition_residual > largest_joint_gap &&
+      outcome.partition_residual > largest_partition_residual(t))
+    outcome.inconsistent = true;
   const double integrated = outcome.covered_area + extended;
   // Reading the clock takes as long as a small solution: every so many elements are measured.
   const bool timed = elements_++ % timed_elements == 0;

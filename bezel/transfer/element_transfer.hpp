@@ -16,6 +16,7 @@
 #include "bezel/transfer/mass_rule.hpp"
 #include "bezel/transfer/moments.hpp"
 #include "bezel/transfer/overlay.hpp"
+#include "bezel/transfer/pair_fit.hpp"
 #include "bezel/transfer/piece_batch.hpp"
 #include "bezel/transfer/transfer.hpp"
 
@@ -88,9 +89,14 @@ class ElementTransfer {
     Vec2 centre;    // mean of the corners
     Vec2 relative;  // the same, from origin_
     double area;
-    double gap;  // by how much the pieces fail to close
+    double gap;  // the widest open joint
   };
+  /// Also fills piece_control_ and bridges_.
   RunShape run_shape(std::span<const Segment> run);
+  double bridge_joints();
+  void give_strips(std::int32_t t, const ElementPieces& own, std::size_t components,
+                   GivenList& given, std::span<double> made);
+  double largest_partition_residual(std::int32_t t) const;
   // By moments (element_moments.cpp).
   static bool by_moments(const Group& g, std::int32_t t, std::int32_t d);
   const PieceTable& piece_table(int degree, int moments);
@@ -112,8 +118,14 @@ class ElementTransfer {
   /// Group i on all regions, their sums already in the batch when `summed`.
   void add_batched(std::size_t i, std::int32_t t, const ElementPieces& own, bool summed,
                    std::span<double> mass);
+  /// The segments around all regions, one region after the other.
+  std::span<const Segment> all_runs(const ElementPieces& own);
   /// The segments around region k.
-  std::span<const Segment> run_of(const ElementPieces& own, std::size_t k);
+  std::span<const Segment> run_of(const ElementPieces& own, std::size_t k) {
+    const auto all = all_runs(own);
+    return all.subspan(run_begin(k), run_end_[k] - run_begin(k));
+  }
+  std::size_t run_begin(std::size_t k) const { return k == 0 ? 0 : run_end_[k - 1]; }
   void note_region(std::int32_t t, std::int32_t d, double area, double gap,
                    ElementOutcome& outcome) const;
   void flush(const Group& g, std::int32_t d, int target_degree, Accumulators& sums);
@@ -142,6 +154,12 @@ class ElementTransfer {
   /// The same for group i on a covered straight element, when it went by moments alone.
   bool finish_straight(std::size_t i, std::int32_t t, std::span<const double> mass, double area,
                        std::span<double> result, ElementOutcome& outcome);
+  struct Solution;
+  /// As finish(), for up to `width` components from number c0 on.
+  template <std::size_t width>
+  static void finish_components(const Solution& s, const Accumulators& sums,
+                                std::span<const double> mass, std::span<const double> base,
+                                std::size_t c0, std::span<double> result, ElementOutcome& outcome);
   const MassRule& mass_rule(int degree);
   static bool factorize(std::size_t n, Factor& factor);
   /// @param whole  moments of the element up to twice the degree, when known
@@ -179,15 +197,23 @@ class ElementTransfer {
   Vec2 origin_;  // of the pieces' control points, on the target element
   std::vector<Vec2> piece_control_, local_control_;
   std::vector<int> piece_degree_;
+  // Straight pieces across open joints of the region run_shape was asked for last, from origin_.
+  struct Bridge {
+    Vec2 from, step;
+  };
+  std::vector<Bridge> bridges_;
+  std::vector<Vec2> piece_starts_, piece_ends_;
+  bool loose_ = false;  // this element's joints may be open a little
   std::vector<MomentPiece> moment_pieces_;
   std::vector<std::unique_ptr<PieceTable>> tables_;
   std::vector<double> moments_;
   PieceBatch batch_;
   std::vector<BatchRegion> regions_;
-  std::vector<double> area_;          // by region
-  std::vector<double> region_mass_;   // of one group, [region][component]
-  std::vector<Segment> segments_;     // of this element, when have_segments_
-  std::vector<std::size_t> run_end_;  // by region
+  std::vector<double> area_;           // by region
+  std::vector<std::uint8_t> bridged_;  // by region: has bridges
+  std::vector<double> region_mass_;    // of one group, [region][component]
+  std::vector<Segment> segments_;      // of this element, when have_segments_
+  std::vector<std::size_t> run_end_;   // by region
   bool have_segments_ = false;
   std::vector<double> w_, tu_, tv_, du_, dv_;  // quadrature points, the first count_ in use
   std::size_t count_ = 0;
@@ -203,6 +229,9 @@ class ElementTransfer {
   std::vector<std::uint8_t> have_moments_;  // by group: for this element
   std::vector<std::uint8_t> extended_;      // by group: into what no donor covers of this element
   std::vector<std::uint8_t> batched_;       // by group: goes by add_batched
+  PairFit fit_;
+  std::vector<std::uint8_t> fitted_;  // by group: goes by fit_
+  std::vector<double> fitted_mass_;
   std::vector<double> masses_;
   std::vector<double> scratch_;
   std::vector<MassRule> mass_rules_;

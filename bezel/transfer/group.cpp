@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bezel/field/integrals.hpp"
 #include "bezel/transfer/accumulate.hpp"
 #include "bezel/transfer/moments.hpp"
 #include "bezel/transfer/piece_batch.hpp"
@@ -53,10 +54,11 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
   const auto nc = static_cast<std::size_t>(components);
   scaled.resize(donor_space->coefficient_count() * nc);
   donor_mass.resize(elements * nc);
+  const std::vector<double> integrals = field_detail::basis_integrals(*donor_space);
   std::size_t c0 = 0;
   for (const Field* f : fields) {
     const auto own = static_cast<std::size_t>(f->components());
-    const std::vector<double> masses = element_integrals(*f);
+    const std::vector<double> masses = field_detail::element_integrals(*f, integrals);
     for (std::size_t e = 0; e < elements; ++e) {
       const auto coefficients = f->coefficients(ElementId(e));
       const auto factors = multinomials(donor_space->degree(ElementId(e)));
@@ -130,7 +132,7 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
       for (std::size_t n = 0; n < factors.size(); ++n) scaled.push_back(n == c ? factors[n] : 0.0);
     }
   }
-  const std::vector<double> integrals = basis_integrals(donor_space, threads);
+  const std::vector<double> integrals = field_detail::basis_integrals(*donor_space, threads);
   donor_mass.assign(donor.element_count() * nc, 0.0);
   for (std::size_t e = 0; e < donor.element_count(); ++e) {
     const ElementId id(e);
@@ -140,29 +142,6 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
   }
 }
 
-std::vector<double> basis_integrals(const std::shared_ptr<const Space>& space, int threads) {
-  std::vector<double> integrals(space->coefficient_count());
-  const std::size_t elements = space->mesh()->element_count();
-  const int functions = bernstein::triangle_size(space->highest_degree());
-  const auto has = [&](std::size_t e, int n) {
-    return n < bernstein::triangle_size(space->degree(ElementId(e)));
-  };
-  for (int n = 0; n < functions; ++n) {
-    const auto place = [&](std::size_t e) {
-      return space->offset(ElementId(e)) + static_cast<std::size_t>(n);
-    };
-    std::vector<double> unit(space->coefficient_count(), 0.0);
-    for (std::size_t e = 0; e < elements; ++e) {
-      if (has(e, n)) unit[place(e)] = 1.0;
-    }
-    const std::vector<double> of =
-        element_integrals(Field("unit", space, std::move(unit)), threads);
-    for (std::size_t e = 0; e < elements; ++e) {
-      if (has(e, n)) integrals[place(e)] = of[e];
-    }
-  }
-  return integrals;
-}
 void Group::make_frames(const OverlayMesh& donor, const OverlayMesh& target) {
   if (!donor_mapped) {
     donor_frame.resize(donor.element_count());

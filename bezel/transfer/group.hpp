@@ -72,9 +72,6 @@ struct Group {
   std::vector<std::size_t> scaled_offset_;  // per degree, for basis functions
 };
 
-/// Integral of each basis function over its element, in the order of the coefficients.
-std::vector<double> basis_integrals(const std::shared_ptr<const Space>& space, int threads);
-
 /// Where point x lies for the polynomial of donor element d: barycentrics 1 and 2 in its frame, or
 /// in the reference triangle when it is mapped. `warm`: the last barycentrics found in d, when
 /// have_warm says so.

@@ -88,13 +88,4 @@ TransferResult transfer_by(const Sweeper& sweeper, std::span<const Field> donors
 /// All groups' components.
 std::size_t component_count(std::span<const Group> groups);
 
-/// One line per component of a field that was moved.
-/// @param donor_masses    element_integrals() of the donor
-/// @param spread          mass added besides, or empty
-/// @param element_defect  largest |element mass - mass received|, per component
-void append_reports(const Field& donor, std::span<const double> donor_masses, const Field& moved,
-                    std::span<const double> outside, std::span<const double> made,
-                    std::span<const double> spread, std::span<const double> element_defect,
-                    int threads, std::vector<FieldReport>& out);
-
 }  // namespace bezel::detail
