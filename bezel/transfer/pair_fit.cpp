@@ -80,7 +80,7 @@ PairFit::PairFit(const OverlayMesh& donor, const OverlayMesh& target, std::size_
     : donor_(donor), target_(target), donors_(groups) {}
 
 bool PairFit::can(const Group& g, const OverlayMesh& donor, const OverlayMesh& target) {
-  const int pd = g.donor_space->highest_degree();
+  const int pd = g.donor_degree.highest;
   const int pt = g.target_space->highest_degree();
   if (!g.donor_mapped && !g.target_mapped && std::max(pd, pt) > max_plane_degree) return false;
   const int k = target_degree(g, target, pt);
@@ -190,7 +190,7 @@ void PairFit::make_target_points(std::span<const Segment> segments) {
   runs_.resize(segments.size());
   if (seen_.size() < donor_.edge_box.size()) seen_.resize(donor_.edge_box.size());
   ++stamp_;
-  const int degree = target_degree_ + fit_degree(*g_, target_, g_->donor_space->highest_degree());
+  const int degree = target_degree_ + fit_degree(*g_, target_, g_->donor_degree.highest);
   const bool mapped = g_->target_mapped;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const Segment& segment = segments[i];
