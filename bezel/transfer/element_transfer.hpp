@@ -93,6 +93,7 @@ class ElementTransfer {
   /// Also fills piece_control_ and bridges_.
   RunShape run_shape(std::span<const Segment> run);
   double bridge_joints();
+  bool is_closed(std::int32_t t, std::int32_t d, double gap) const;
   void give_strips(std::int32_t t, const ElementPieces& own, std::size_t components,
                    GivenList& given, std::span<double> made);
   double largest_partition_residual(std::int32_t t) const;
