@@ -15,6 +15,9 @@ namespace {
 /// Gaps below this fraction of an element are rounding and are extended whatever the policy.
 constexpr double silent_gap = 1e-10;
 
+/// How large powers of barycentrics may be at points of a rule, in and around a region.
+constexpr double steepest_value = 256.0;
+
 constexpr std::uint64_t timed_elements = 16;
 
 double signed_step(const Part& part) {
@@ -265,6 +268,22 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
                     plane_.push_back(x);
                   });
     donor_places(g, d, first);
+    double largest = 1.0;
+    for (std::size_t i = first; i < count_; ++i)
+      largest = std::max({largest, std::abs(du_[i]), std::abs(dv_[i])});
+    if (std::pow(largest, pd) > steepest_value) {  // a thin donor, as below
+      count_ = first;
+      const int own_degree = pt + inexact_extra + (2 + pd) * donor_.degree - 2;
+      reference_nodes(donor_, d, run, true, own_degree);
+      std::array<double, 3> lambda{}, warm{};
+      bool found = false, have_warm = false;
+      reference_fan(donor_, d, reference_centre(), own_degree,
+                    [&](double w, const std::array<double, 2>& q, const Vec2& x) {
+                      found = invert_map(target_.degree, target_.element(t), x, lambda, found);
+                      const auto place = g.donor_mapped ? q : donor_place(g, d, x, warm, have_warm);
+                      push(w, lambda[1], lambda[2], place[0], place[1]);
+                    });
+    }
     flush(g, d, pt, sums);
   } else {
     // The donor's mean is carried exactly by the physical fan, only the rest by the rule in
@@ -277,11 +296,29 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
     reference_nodes(donor_, d, run, true, degree);
     Accumulators mapped;
     mapped.reset(functions, nc);
+    const std::size_t first = count_;
+    double largest = 1.0;
     reference_fan(donor_, d, reference_centre(), degree,
                   [&](double w, const std::array<double, 2>& q, const Vec2& x) {
                     const auto place = target_place(g, t, x);
+                    largest = std::max({largest, std::abs(place[0]), std::abs(place[1])});
                     push(w, place[0], place[1], q[0], q[1]);
                   });
+    // A thin target is bent in the donor's coordinates, and rays there leave it by many times its
+    // width: then its own coordinates serve.
+    if (std::pow(largest, pt) > steepest_value) {
+      count_ = first;
+      const int own_degree = pd + inexact_extra + 2 * (target_.degree - 1) + pt * target_.degree;
+      reference_nodes(target_, t, run, false, own_degree);
+      plane_.clear();
+      reference_fan(target_, t, reference_centre(), own_degree,
+                    [&](double w, const std::array<double, 2>&, const Vec2& x) {
+                      const auto place = target_place(g, t, x);
+                      push(w, place[0], place[1], 0.0, 0.0);
+                      plane_.push_back(x);
+                    });
+      donor_places(g, d, first);
+    }
     flush(g, d, pt, mapped);
     for (std::size_t n = 0; n < functions; ++n) {
       const double difference = exact.basis[n] - mapped.basis[n];

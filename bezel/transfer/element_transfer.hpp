@@ -96,6 +96,7 @@ class ElementTransfer {
   double bridge_joints();
   /// Starts and steps of bridges_ in the plane.
   std::span<const std::array<Vec2, 2>> plane_bridges();
+  bool is_closed(std::int32_t t, std::int32_t d, double gap) const;
   void give_strips(std::int32_t t, const ElementPieces& own, std::size_t components,
                    GivenList& given, std::span<double> made);
   double largest_partition_residual(std::int32_t t) const;
