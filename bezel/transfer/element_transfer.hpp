@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <span>
 #include <utility>
@@ -146,6 +147,7 @@ class ElementTransfer {
   /// Whether the space's frame is another than the triangle computed on.
   bool in_other_frame(const Group& g, std::int32_t t) const;
   const MassRule& mass_rule(int degree);
+  const MappedMass& mapped_mass(int degree);
   static bool factorize(std::size_t n, Factor& factor);
   const Factor& factor(const Group& g, std::int32_t t);
   /// Makes room for `more` points in the arrays.
@@ -207,6 +209,7 @@ class ElementTransfer {
   std::vector<double> masses_;
   std::vector<double> scratch_;
   std::vector<MassRule> mass_rules_;
+  std::deque<MappedMass> mapped_masses_;
   Factor factor_, reference_factor_;
   int reference_degree_ = -1;
 };

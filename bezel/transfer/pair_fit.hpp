@@ -69,7 +69,7 @@ class PairFit {
   bool place_points(std::int32_t d, int m, int p, const FitFrame& frame);
   void donor_mass(const Donor& donor, std::size_t begin, std::size_t end, double area,
                   std::span<double> mass);
-  void pull_one_by_one(std::int32_t d, const Part& part, std::size_t first, std::size_t count);
+  void append_one_by_one(std::int32_t d, const Part& part, int points);
   void plane_mass(std::int32_t d, std::size_t begin, std::size_t end, std::span<double> mass);
 
   const OverlayMesh& donor_;
