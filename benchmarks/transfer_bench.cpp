@@ -22,16 +22,18 @@ struct Meshes {
 };
 
 /// A square and a disc inside it with about `elements` triangles each.
-const Meshes& meshes(int g, int elements) {
-  static std::map<std::array<int, 2>, Meshes> made;
-  Meshes& m = made[{g, elements}];
+const Meshes& meshes(int donor_degree, int target_degree, int elements) {
+  static std::map<std::array<int, 3>, Meshes> made;
+  Meshes& m = made[{donor_degree, target_degree, elements}];
   if (!m.donor) {
     GenerateOptions options;
-    options.degree = g;
-    options.curve_jitter = g > 1 ? 0.05 : 0.0;
+    options.degree = donor_degree;
+    options.curve_jitter = donor_degree > 1 ? 0.05 : 0.0;
     options.seed = 1;
     options.size = std::sqrt(2.125 * 2.125 / (0.433 * elements));
     m.donor = std::make_shared<const TriangleMesh>(generate_rectangle(2.125, 2.125, options));
+    options.degree = target_degree;
+    options.curve_jitter = target_degree > 1 ? 0.05 : 0.0;
     options.seed = 2;
     options.size = std::sqrt(3.14159 / (0.433 * elements));
     m.target = std::make_shared<const TriangleMesh>(generate_disc(1.0, options));
@@ -39,15 +41,11 @@ const Meshes& meshes(int g, int elements) {
   return m;
 }
 
-void transfer_pairs(benchmark::State& state) {
-  const int g = static_cast<int>(state.range(0));
-  const int p = static_cast<int>(state.range(1));
-  const Basis basis = state.range(2) == 0 ? Basis::physical : Basis::reference;
-  const Meshes& m = meshes(g, static_cast<int>(state.range(3)));
+void run(benchmark::State& state, const Meshes& m, int donor_degree, Basis from,
+         const TransferOptions& options) {
   const Formula wave("exp(x^2) + 2*y");
-  const Field field = project("wave", Space::discontinuous(m.donor, p, basis), {&wave, 1});
-  TransferOptions options;
-  options.threads = 1;
+  const Field field =
+      project("wave", Space::discontinuous(m.donor, donor_degree, from), {&wave, 1});
   TransferResult result;
   double kernel = 0.0;
   for (auto _ : state) {
@@ -67,9 +65,35 @@ void transfer_pairs(benchmark::State& state) {
   state.counters["l2_error"] = error_norms(result.fields[0], {&wave, 1}).l2_relative;
 }
 
+Basis basis_of(std::int64_t reference) {
+  return reference == 0 ? Basis::physical : Basis::reference;
+}
+
+void transfer_pairs(benchmark::State& state) {
+  const int g = static_cast<int>(state.range(0));
+  TransferOptions options;
+  options.threads = 1;
+  run(state, meshes(g, g, static_cast<int>(state.range(3))), static_cast<int>(state.range(1)),
+      basis_of(state.range(2)), options);
+}
+
+/// Another geometric degree, field degree and basis on the target.
+void transfer_mixed(benchmark::State& state) {
+  TransferOptions options;
+  options.threads = 1;
+  options.degree = static_cast<int>(state.range(4));
+  options.same_basis = false;
+  options.basis = basis_of(state.range(5));
+  run(state,
+      meshes(static_cast<int>(state.range(0)), static_cast<int>(state.range(3)),
+             static_cast<int>(state.range(6))),
+      static_cast<int>(state.range(1)), basis_of(state.range(2)), options);
+}
+
 /// Many fields in one pass: time per field against that of one.
 void transfer_fields(benchmark::State& state) {
-  const Meshes& m = meshes(static_cast<int>(state.range(0)), 10000);
+  const Meshes& m =
+      meshes(static_cast<int>(state.range(0)), static_cast<int>(state.range(0)), 10000);
   const auto space =
       Space::discontinuous(m.donor, static_cast<int>(state.range(1)), Basis::physical);
   std::vector<Field> fields;
@@ -107,6 +131,23 @@ BENCHMARK(transfer_pairs)
     ->Args({3, 3, 0, 10000})
     ->Args({2, 2, 1, 1000})
     ->Args({3, 3, 1, 1000})
+    ->Args({2, 2, 1, 10000})
+    ->Args({3, 3, 1, 10000})
+    ->Args({4, 2, 0, 1000})
+    ->Args({5, 3, 0, 1000})
+    ->Args({2, 4, 0, 1000})
+    ->Args({2, 6, 0, 1000})
+    ->Args({1, 8, 0, 1000})
     ->Args({1, 1, 0, 100000})
     ->Args({2, 2, 0, 100000})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(transfer_mixed)
+    ->ArgNames({"g", "p", "reference", "to_g", "to_p", "to_reference", "elements"})
+    ->Args({2, 2, 1, 2, 2, 0, 10000})
+    ->Args({2, 2, 0, 2, 2, 1, 10000})
+    ->Args({3, 3, 1, 3, 3, 0, 10000})
+    ->Args({3, 3, 0, 3, 3, 1, 10000})
+    ->Args({2, 3, 0, 2, 2, 0, 10000})
+    ->Args({3, 2, 0, 2, 2, 0, 10000})
+    ->Args({3, 3, 1, 2, 2, 1, 10000})
     ->Unit(benchmark::kMillisecond);

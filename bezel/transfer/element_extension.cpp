@@ -93,7 +93,8 @@ void ElementTransfer::add_extension(const Group& g, std::int32_t t, std::span<co
     for (std::size_t n = 0; n < phi.size(); ++n) {
       const double weighted = w * phi[n] / factors[n];
       sums.basis[n] += weighted;
-      for (std::size_t c = 0; c < nc; ++c) sums.product[n * nc + c] += weighted * value[c];
+      for (std::size_t c = 0; c < nc; ++c)
+        sums.product[n * nc + c] += weighted * (value[c] - taken_[c]);
     }
     for (std::size_t c = 0; c < nc; ++c) difference[c] += w * (value[c] - first[c]);
   };

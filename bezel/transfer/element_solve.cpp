@@ -12,6 +12,9 @@ namespace bezel::detail {
 
 namespace {
 
+/// Geometric and field degree in all up to which mass matrices come from tables of products.
+constexpr int max_mapped_mass = 12;
+
 /// An element is covered when its overlaps add up to its area within this fraction.
 constexpr double full_cover = 1e-9;
 
@@ -72,6 +75,13 @@ const MassRule& ElementTransfer::mass_rule(int degree) {
   return mass_rules_.back();
 }
 
+const MappedMass& ElementTransfer::mapped_mass(int degree) {
+  for (const MappedMass& known : mapped_masses_) {
+    if (known.degree == degree) return known;
+  }
+  return mapped_masses_.emplace_back(target_.degree, degree);
+}
+
 bool ElementTransfer::factorize(std::size_t n, Factor& factor) {
   if (!cholesky(n, factor.lower)) return false;
   factor.inverse.resize(n);
@@ -98,23 +108,40 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
     return reference_factor_;
   }
   if (moment_factor(g, t, whole)) return f;
+  f.scale = 1.0;
+  if (g.target_mapped && gd + p <= max_mapped_mass) {
+    const MappedMass& mass = mapped_mass(p);
+    f.lower.resize(n * n);
+    f.integrals.resize(n);
+    mass.compute(target_.element(t), f.lower, f.integrals);
+    if (factorize(n, f)) return f;
+  }
   const int degree = g.target_mapped ? 2 * p + 2 * (gd - 1) : 2 * p * gd + 2 * (gd - 1);
   const MassRule& points = mass_rule(degree);
-  f.lower.assign(n * n, 0.0);
-  f.integrals.assign(n, 0.0);
-  std::vector<double>& phi = scratch_;
-  phi.resize(n);
-  const auto control = target_.element(t);
-  for (std::size_t q = 0; q < points.weight.size(); ++q) {
-    const MassPoint map = mass_point(points, control, q);
-    const auto place = g.target_mapped ? points.place[q] : target_place(g, t, map.x);
-    basis_at(p, place[0], place[1], phi.data());
-    const double w = points.weight[q] * map.det;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double wi = w * phi[i];
-      f.integrals[i] += wi;
-      for (std::size_t j = 0; j <= i; ++j) f.lower[i * n + j] += wi * phi[j];
-    }
+  const std::size_t count = points.weight.size(), padded = fit_padded(count);
+  scratch_.assign(6 * padded + n * (n + 1) / 2, 0.0);
+  double *u = scratch_.data(), *v = u + padded, *x = v + padded, *y = x + padded, *w = y + padded;
+  double *det = w + padded, *products = det + padded;
+  for (std::size_t q = 0; q < count; ++q) {
+    u[q] = points.place[q][0];
+    v[q] = points.place[q][1];
+  }
+  fit_map(MapPolynomial(gd, target_.element(t)), padded / fit_lanes, u, v, x, y, det);
+  for (std::size_t q = 0; q < count; ++q) {
+    w[q] = points.weight[q] * det[q];
+    if (g.target_mapped) continue;
+    const auto place = target_place(g, t, Vec2{{x[q], y[q]}});
+    u[q] = place[0];
+    v[q] = place[1];
+  }
+  f.lower.resize(n * n);
+  f.integrals.resize(n);
+  fit_products(p, padded, w, u, v, products, f.integrals.data());
+  const auto factors = multinomials(p);
+  for (std::size_t i = 0; i < n; ++i) {
+    f.integrals[i] *= factors[i];
+    for (std::size_t j = 0; j <= i; ++j, ++products)
+      f.lower[i * n + j] = factors[i] * factors[j] * *products;
   }
   if (!factorize(n, f)) {
     throw NumericsError("target triangle " + std::to_string(target_.number_of(t)) +

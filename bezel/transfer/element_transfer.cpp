@@ -73,9 +73,15 @@ void ElementTransfer::flush(const Group& g, std::int32_t d, int target_degree, A
   while (count_ % lanes != 0) push(0.0, 0.0, 0.0, 0.0, 0.0);
   const PointBlock points{w_.data(),  tu_.data(), tv_.data(),
                           du_.data(), dv_.data(), count_ / lanes};
-  accumulate(target_degree, g.donor_space->degree(ElementId(d)), g.components,
-             g.donor_scaled(d).data(), points, sums.product.data(), sums.basis.data(),
-             sums.mass.data());
+  const int degree = g.donor_space->degree(ElementId(d));
+  const auto factors = multinomials(degree);
+  const auto scaled = g.donor_scaled(d);
+  shifted_.assign(scaled.begin(), scaled.end());
+  for (std::size_t c = 0; c < taken_.size(); ++c)
+    for (std::size_t n = 0; n < factors.size(); ++n)
+      shifted_[c * factors.size() + n] -= taken_[c] * factors[n];
+  accumulate(target_degree, degree, g.components, shifted_.data(), points, sums.product.data(),
+             sums.basis.data(), sums.mass.data());
   count_ = 0;
 }
 
@@ -252,7 +258,7 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
   if (!g.target_mapped && !g.donor_mapped) {
     std::fill(sums.mass.begin(), sums.mass.end(), 0.0);
     physical_fan(pt + pd, pt, sums);
-    for (std::size_t c = 0; c < nc; ++c) mass[c] = sums.mass[c];
+    for (std::size_t c = 0; c < nc; ++c) mass[c] = sums.mass[c] + taken_[c] * area;
     return;
   }
 
@@ -325,7 +331,7 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
       sums.basis[n] += exact.basis[n];
       for (std::size_t c = 0; c < nc; ++c) {
         sums.product[n * nc + c] +=
-            mapped.product[n * nc + c] + donor_mass[c] / donor_area * difference;
+            mapped.product[n * nc + c] + (donor_mass[c] / donor_area - taken_[c]) * difference;
       }
     }
   }
@@ -335,7 +341,7 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
   total.reset(1, nc);
   if (!g.donor_mapped) {
     physical_fan(pd, 0, total);
-    for (std::size_t c = 0; c < nc; ++c) mass[c] = total.mass[c];
+    for (std::size_t c = 0; c < nc; ++c) mass[c] = total.mass[c] + taken_[c] * area;
     return;
   }
   const int degree = pd + 2 * (donor_.degree - 1);
@@ -349,7 +355,7 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
                 });
   flush(g, d, 0, total);
   for (std::size_t c = 0; c < nc; ++c)
-    mass[c] = total.mass[c] + donor_mass[c] / donor_area * (area - weight);
+    mass[c] = total.mass[c] + taken_[c] * weight + donor_mass[c] / donor_area * (area - weight);
 }
 
 std::span<const std::array<Vec2, 2>> ElementTransfer::plane_bridges() {
@@ -359,13 +365,16 @@ std::span<const std::array<Vec2, 2>> ElementTransfer::plane_bridges() {
   return plane_bridges_;
 }
 
-// What is in the sums so far has the whole polynomials.
-void ElementTransfer::subtract_base(std::size_t i) {
-  const std::vector<double>& base = base_[i];
-  Accumulators& sums = sums_[i];
-  for (std::size_t n = 0; n < sums.basis.size(); ++n)
-    for (std::size_t c = 0; c < base.size(); ++c)
-      sums.product[n * base.size() + c] -= base[c] * sums.basis[n];
+// Constants come back whatever the rounding of the sums when they are not integrated at all.
+void ElementTransfer::choose_base(std::size_t i, const ElementPieces& own) {
+  const Group& g = groups_[i];
+  const auto nc = static_cast<std::size_t>(g.components);
+  const auto some = std::find_if(own.donors.begin(), own.donors.end(),
+                                 [](std::int32_t d) { return d != exterior; });
+  if (some == own.donors.end()) return;
+  const auto d = static_cast<std::size_t>(*some);
+  for (std::size_t c = 0; c < nc; ++c)
+    base_[i][c] = g.donor_mass[d * nc + c] / donor_.element_area[d];
 }
 
 void ElementTransfer::begin_moments(std::size_t i) {
@@ -449,7 +458,10 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
     if (fitted) {
       fit_.begin(i, g, t, all_runs(own), blocks == nullptr);
       base_[i].assign(fit_.constants().begin(), fit_.constants().end());
+    } else if (!batched && blocks == nullptr) {
+      choose_base(i, own);
     }
+    taken_ = base_[i];
     double* to = given.mass.data() + first_given * components + c0;
     for (std::size_t k = 0; k < own.donors.size(); ++k) {
       const std::int32_t d = own.donors[k];
@@ -491,7 +503,6 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
       to += components;
       if (blocks != nullptr) keep_pair(d, sums_[i], here, *blocks);
     }
-    if (blocks == nullptr) subtract_base(i);
     if (fits) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
     // Donors of several degrees: what is not summed by moments is in the other sums.
     if (!batched) extended_[i] = 1;

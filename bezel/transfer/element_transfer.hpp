@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <span>
 #include <utility>
@@ -112,7 +113,7 @@ class ElementTransfer {
   static bool can_batch(const Group& g);
   static TargetPlace target_place(const Group& g, std::int32_t t);
   void begin_moments(std::size_t group);
-  void subtract_base(std::size_t group);
+  void choose_base(std::size_t group, const ElementPieces& own);
   void fill_batch(std::span<const BoundaryPiece> pieces);
   template <std::size_t points>
   void fill_curves(std::span<const BoundaryPiece> pieces);
@@ -165,6 +166,7 @@ class ElementTransfer {
                                 std::span<const double> mass, std::span<const double> base,
                                 std::size_t c0, std::span<double> result, ElementOutcome& outcome);
   const MassRule& mass_rule(int degree);
+  const MappedMass& mapped_mass(int degree);
   static bool factorize(std::size_t n, Factor& factor);
   /// @param whole  moments of the element up to twice the degree, when known
   const Factor& factor(const Group& g, std::int32_t t, std::span<const double> whole);
@@ -230,6 +232,8 @@ class ElementTransfer {
   std::vector<std::vector<double>> whole_;  // by group, of batched ones on curved elements: moments
                                             // of all regions together
   std::vector<double> powers_;
+  std::vector<double> shifted_;
+  std::span<const double> taken_;           // base_ of the group at work
   std::vector<std::vector<double>> base_;   // by group, [component]: taken off before integrating
   std::vector<std::uint8_t> have_moments_;  // by group: for this element
   std::vector<std::uint8_t> extended_;      // by group: sums_ hold what moment_sums_ lack
@@ -240,6 +244,7 @@ class ElementTransfer {
   std::vector<double> masses_;
   std::vector<double> scratch_;
   std::vector<MassRule> mass_rules_;
+  std::deque<MappedMass> mapped_masses_;
   Factor factor_, reference_factor_;
   int reference_degree_ = -1;
 };

@@ -40,6 +40,20 @@ inline MassPoint mass_point(const MassRule& rule, std::span<const Vec2> control,
   return {x, cross(du, dv)};
 }
 
+/// Mass matrices of mapped polynomials, exactly: the Jacobian determinant is a polynomial too.
+struct MappedMass {
+  MappedMass(int with_geometric_degree, int with_degree);
+  int geometric_degree, degree;
+  std::size_t size;               ///< basis functions
+  std::vector<double> integrals;  ///< [function of the determinant][function]
+  std::vector<double> products;   ///< [function of the determinant][i, j <= i, row by row]
+  /// @param control   of the element
+  /// @param mass      out, lower triangle of (size x size)
+  /// @param integral  out, of each basis function
+  void compute(std::span<const Vec2> control, std::span<double> mass,
+               std::span<double> integral) const;
+};
+
 /// Replaces the lower triangle of a matrix (n x n, row major) by its Cholesky factor; false when
 /// the matrix is not positive definite in double precision.
 bool cholesky(std::size_t n, std::span<double> lower);

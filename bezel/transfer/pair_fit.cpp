@@ -12,7 +12,9 @@ namespace bezel::detail {
 namespace {
 
 /// Gauss points on a curve that is pulled back by an inverse map, beyond what a polynomial needs.
-constexpr int pulled_extra = 2;
+constexpr int pulled_extra = 1;
+/// ... where nothing else is inexact.
+constexpr int pulled_extra_plane = 2;
 /// Degrees beyond the donor's own that the composition of a mapped donor with another map gets,
 /// and more where that is not enough.
 constexpr int composed_extra = 2;
@@ -37,15 +39,26 @@ int target_degree(const Group& g, const OverlayMesh& target, int degree) {
 int fit_degree(const Group& g, const OverlayMesh& target, int degree) {
   if (degree == 0) return 0;
   if (!g.donor_mapped && !g.target_mapped) return degree;
-  return g.donor_mapped ? degree + composed_extra : degree * target.degree;
+  if (!g.donor_mapped) return degree * target.degree;
+  return degree + composed_extra + (target.degree > 2 ? 1 : 0);
 }
 
 /// Largest tails (fit_tails) of the donor's coordinates u, interpolated with degree m: where they
 /// fall off like r^j, the first part of a polynomial of degree p in u that degree m misses is
 /// u^(p-1) times the part of degree m - p + 2 of u.
 std::array<double, 2> largest_tails(int m, int p) {
-  const double rate = std::pow(composed_accuracy, 1.0 / (m - p + 1));
-  return {std::pow(rate, m - 1), std::pow(rate, m - 2)};
+  static const auto all = [] {
+    std::array<std::array<std::array<double, 2>, max_fit_degree + 1>, max_fit_degree + 1> made{};
+    for (int fit = 2; fit <= max_fit_degree; ++fit) {
+      for (int degree = 1; degree <= fit; ++degree) {
+        const double rate = std::pow(composed_accuracy, 1.0 / (fit - degree + 1));
+        made[static_cast<std::size_t>(fit)][static_cast<std::size_t>(degree)] = {
+            std::pow(rate, fit - 1), std::pow(rate, fit - 2)};
+      }
+    }
+    return made;
+  }();
+  return all[static_cast<std::size_t>(m)][static_cast<std::size_t>(p)];
 }
 
 int mass_degree(const OverlayMesh& donor, int degree) {
@@ -56,9 +69,9 @@ void zero(std::vector<double>& array, std::size_t size) {
   array.assign(size, 0.0);
 }
 
-bool inside(const CurvePoints& points, std::size_t first, std::size_t count) {
+bool inside(const CurvePoints& points) {
   bool all = true;
-  for (std::size_t i = first; i < first + count; ++i)
+  for (std::size_t i = 0; i < points.count; ++i)
     all = all && points.x[i] >= -outside && points.y[i] >= -outside &&
           points.x[i] + points.y[i] <= 1.0 + outside;
   return all;
@@ -190,7 +203,10 @@ void PairFit::make_target_points(std::span<const Segment> segments) {
   runs_.resize(segments.size());
   if (seen_.size() < donor_.edge_box.size()) seen_.resize(donor_.edge_box.size());
   ++stamp_;
-  const int degree = target_degree_ + fit_degree(*g_, target_, g_->donor_degree.highest);
+  // Degrees that interpolation adds are small and need no exact rule.
+  const int pd = g_->donor_degree.highest;
+  const int degree =
+      target_degree_ + (g_->donor_mapped && pd > 0 ? pd + 1 : fit_degree(*g_, target_, pd));
   const bool mapped = g_->target_mapped;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const Segment& segment = segments[i];
@@ -217,8 +233,9 @@ void PairFit::make_target_points(std::span<const Segment> segments) {
     }
     const OverlayMesh& mesh = source ? donor_ : target_;
     const Part& part = source ? segment.source : segment.target;
-    const int points = mapped ? degree / 2 + 1 + pulled_extra
-                              : (degree * mesh.degree + 2 * mesh.degree - 2) / 2 + 1;
+    const int extra = g_->donor_mapped ? pulled_extra : pulled_extra_plane;
+    const int points =
+        mapped ? degree / 2 + 1 + extra : (degree * mesh.degree + 2 * mesh.degree - 2) / 2 + 1;
     const Vec2 origin = mapped ? Vec2{} : target_map_.base;
     const std::size_t first = append_curve(mesh.edge(part.edge), part, origin, points, pulled_);
     run = {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(pulled_.count - first),
@@ -231,7 +248,7 @@ void PairFit::make_target_points(std::span<const Segment> segments) {
   if (mapped) {
     ready_ = fit_invert(target_map_, whole / fit_lanes, pulled_.x.data(), pulled_.y.data(),
                         pulled_.x.data(), pulled_.y.data(), pulled_.dx.data(), pulled_.dy.data()) &&
-             inside(pulled_, 0, pulled_.count);
+             inside(pulled_);
     return;
   }
   const Frame& frame = g_->target_frame[static_cast<std::size_t>(t_)];
@@ -387,24 +404,28 @@ void PairFit::mass_of(std::int32_t d, std::size_t begin, std::size_t end, double
 void PairFit::donor_mass(const Donor& donor, std::size_t begin, std::size_t end, double area,
                          std::span<const std::array<Vec2, 2>> bridges, std::span<double> mass) {
   const int degree = mass_degree(donor_, g_->donor_space->degree(ElementId(donor.element)));
+  const int pulled = degree / 2 + 1 + pulled_extra;
   boundary_.clear();
   for (std::size_t i = begin; i < end; ++i) {
     const Segment& segment = segments_[i];
-    if (segment.source.edge >= 0) {
-      append_side(donor_, donor.element, segment.source, degree / 2 + 1, boundary_);
-      continue;
-    }
-    const std::size_t first = append_curve(target_.edge(segment.target.edge), segment.target,
-                                           Vec2{}, degree / 2 + 1 + pulled_extra, boundary_);
-    const std::size_t count = boundary_.count - first;
-    boundary_.append(fit_padded(count) - count);
-    boundary_.count = first + count;
-    double *x = boundary_.x.data() + first, *y = boundary_.y.data() + first;
-    if (!fit_invert(donor.map, fit_padded(count) / fit_lanes, x, y, x, y,
-                    boundary_.dx.data() + first, boundary_.dy.data() + first) ||
-        !inside(boundary_, first, count))
-      pull_one_by_one(donor.element, segment.target, first, count);
+    if (segment.source.edge < 0)
+      append_curve(target_.edge(segment.target.edge), segment.target, Vec2{}, pulled, boundary_);
   }
+  if (boundary_.count > 0) {
+    pad(boundary_);
+    double *x = boundary_.x.data(), *y = boundary_.y.data();
+    if (!fit_invert(donor.map, fit_padded(boundary_.count) / fit_lanes, x, y, x, y,
+                    boundary_.dx.data(), boundary_.dy.data()) ||
+        !inside(boundary_)) {
+      boundary_.clear();
+      for (std::size_t i = begin; i < end; ++i)
+        if (segments_[i].source.edge < 0)
+          append_one_by_one(donor.element, segments_[i].target, pulled);
+    }
+  }
+  for (std::size_t i = begin; i < end; ++i)
+    if (segments_[i].source.edge >= 0)
+      append_side(donor_, donor.element, segments_[i].source, degree / 2 + 1, boundary_);
   for (const auto& [from, step] : bridges) {
     std::array<double, 3> lambda{};
     if (!invert_map(donor_.degree, donor_.element(donor.element), from + 0.5 * step, lambda, false))
@@ -422,13 +443,13 @@ void PairFit::donor_mass(const Donor& donor, std::size_t begin, std::size_t end,
 }
 
 // Where Newton's method from the affine map fails: each point from the one before.
-void PairFit::pull_one_by_one(std::int32_t d, const Part& part, std::size_t first,
-                              std::size_t count) {
-  const Rule& line = rule(static_cast<int>(count));
+void PairFit::append_one_by_one(std::int32_t d, const Part& part, int points) {
+  const Rule& line = rule(points);
+  const std::size_t first = boundary_.append(line.count);
   const double step = part.to - part.from;
   std::array<double, 3> lambda{};
   bool warm = false;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < line.count; ++i) {
     const auto at = edge_point(target_.edge(part.edge), part.from + step * line.node[i]);
     warm = invert_map(donor_.degree, donor_.element(d), at.value, lambda, warm);
     pull_point(d, lambda, at.derivative * (step * line.weight[i]), first + i);

@@ -79,7 +79,7 @@ class PairFit {
   /// Sets a point of boundary_ in the donor's reference triangle.
   void pull_point(std::int32_t d, const std::array<double, 3>& lambda, const Vec2& step,
                   std::size_t at);
-  void pull_one_by_one(std::int32_t d, const Part& part, std::size_t first, std::size_t count);
+  void append_one_by_one(std::int32_t d, const Part& part, int points);
   void plane_mass(std::int32_t d, std::size_t begin, std::size_t end, std::span<double> mass);
 
   const OverlayMesh& donor_;

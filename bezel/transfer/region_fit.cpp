@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <numbers>
+#include <type_traits>
 
 #include "bezel/bernstein/index.hpp"
 #include "bezel/numeric/binomial.hpp"
@@ -96,9 +97,10 @@ void map_of(const MapPolynomial& map, std::size_t blocks, const double* u, const
   }
 }
 
-template <int G>
-bool invert_of(const MapPolynomial& map, std::size_t blocks, const double* x, const double* y,
-               double* u, double* v, double* dx, double* dy) {
+/// B blocks at once, for one alone waits for each of its own results.
+template <int G, std::size_t B>
+HWY_INLINE bool invert_blocks(const MapPolynomial& map, const double* x, const double* y, double* u,
+                              double* v, double* dx, double* dy) {
   constexpr int most_steps = 12;
   constexpr double converged = 0x1p-56;  // of the squared step: the next is its square
   const int g = map.degree;
@@ -108,36 +110,61 @@ bool invert_of(const MapPolynomial& map, std::size_t blocks, const double* x, co
   const double det0 = xu0 * yv0 - xv0 * yu0;
   if (!(det0 > 0.0)) return false;
   const double scale = 1.0 / det0;
-  for (std::size_t at = 0; at < blocks * fit_lanes; at += fit_lanes) {
-    const Lanes px = load(x + at) - map.base.x(), py = load(y + at) - map.base.y();
-    Lanes s = (px * yv0 - py * xv0) * scale, t = (py * xu0 - px * yu0) * scale;
-    Lanes wx, wy, xu, xv, yu, yv;
-    bool done = G == 1;
-    for (int step = 0; step < most_steps && !done; ++step) {
-      horner<G>(g, cx, s, t, wx, xu, xv);
-      horner<G>(g, cy, s, t, wy, yu, yv);
-      const Lanes det = xu * yv - xv * yu, inverse = 1.0 / det;
-      const Lanes rx = px - wx, ry = py - wy;
-      const Lanes ds = (rx * yv - ry * xv) * inverse, dt = (ry * xu - rx * yu) * inverse;
-      s += ds;
-      t += dt;
-      const Lanes size = ds * ds + dt * dt;
-      done = true;
-      for (std::size_t l = 0; l < fit_lanes; ++l)
-        done = done && size[l] <= converged && det[l] > 0.0;
+  Lanes px[B], py[B], s[B], t[B], wx[B], wy[B], xu[B], xv[B], yu[B], yv[B];
+  for (std::size_t i = 0; i < B; ++i) {
+    px[i] = load(x + i * fit_lanes) - map.base.x();
+    py[i] = load(y + i * fit_lanes) - map.base.y();
+    s[i] = (px[i] * yv0 - py[i] * xv0) * scale;
+    t[i] = (py[i] * xu0 - px[i] * yu0) * scale;
+  }
+  bool done = G == 1;
+  for (int step = 0; step < most_steps && !done; ++step) {
+    for (std::size_t i = 0; i < B; ++i) {
+      horner<G>(g, cx, s[i], t[i], wx[i], xu[i], xv[i]);
+      horner<G>(g, cy, s[i], t[i], wy[i], yu[i], yv[i]);
     }
-    if (!done) return false;
-    store(s + map.centre, u + at);
-    store(t + map.centre, v + at);
+    auto good = Lanes{} == Lanes{};
+    for (std::size_t i = 0; i < B; ++i) {
+      const Lanes det = xu[i] * yv[i] - xv[i] * yu[i], inverse = 1.0 / det;
+      const Lanes rx = px[i] - wx[i], ry = py[i] - wy[i];
+      const Lanes ds = (rx * yv[i] - ry * xv[i]) * inverse;
+      const Lanes dt = (ry * xu[i] - rx * yu[i]) * inverse;
+      s[i] += ds;
+      t[i] += dt;
+      good = good & ((ds * ds + dt * dt <= converged) & (det > 0.0));
+    }
+    done =
+        ((good[0] & good[1]) & (good[2] & good[3])) & ((good[4] & good[5]) & (good[6] & good[7]));
+  }
+  if (!done) return false;
+  for (std::size_t i = 0; i < B; ++i) {
+    const std::size_t at = i * fit_lanes;
+    store(s[i] + map.centre, u + at);
+    store(t[i] + map.centre, v + at);
     if (dx == nullptr) continue;
-    horner<G>(g, cx, s, t, wx, xu, xv);
-    horner<G>(g, cy, s, t, wy, yu, yv);
-    const Lanes inverse = 1.0 / (xu * yv - xv * yu);
+    horner<G>(g, cx, s[i], t[i], wx[i], xu[i], xv[i]);
+    horner<G>(g, cy, s[i], t[i], wy[i], yu[i], yv[i]);
+    const Lanes inverse = 1.0 / (xu[i] * yv[i] - xv[i] * yu[i]);
     const Lanes ax = load(dx + at), ay = load(dy + at);
-    store((ax * yv - ay * xv) * inverse, dx + at);
-    store((ay * xu - ax * yu) * inverse, dy + at);
+    store((ax * yv[i] - ay * xv[i]) * inverse, dx + at);
+    store((ay * xu[i] - ax * yu[i]) * inverse, dy + at);
   }
   return true;
+}
+
+template <int G>
+bool invert_of(const MapPolynomial& map, std::size_t blocks, const double* x, const double* y,
+               double* u, double* v, double* dx, double* dy) {
+  const auto from = [](double* p, std::size_t at) { return p == nullptr ? nullptr : p + at; };
+  std::size_t block = 0;
+  for (; block + 2 <= blocks; block += 2) {
+    const std::size_t at = block * fit_lanes;
+    if (!invert_blocks<G, 2>(map, x + at, y + at, u + at, v + at, from(dx, at), from(dy, at)))
+      return false;
+  }
+  const std::size_t at = block * fit_lanes;
+  return block == blocks ||
+         invert_blocks<G, 1>(map, x + at, y + at, u + at, v + at, from(dx, at), from(dy, at));
 }
 
 void map_target(const MapPolynomial& map, std::size_t blocks, const double* u, const double* v,
@@ -203,34 +230,48 @@ HWY_INLINE void eight_powers(double x, Lanes& out) {
   out = one * two * four;
 }
 
-void moments_target(int degree, const double* x, const double* y, const double* dx,
-                    const double* dy, std::size_t count, const FitFrame& frame,
-                    const FitDivisors& divisors, double* moments) {
-  const std::size_t wide = fit_stride(degree) / fit_lanes;
-  Lanes sums[(max_fit_moments + 1) * max_fit_vectors];
+/// Adds k x^a y^b of four points to rows of sums; wide: vectors in a row.
+template <std::size_t wide>
+HWY_INLINE void add_four(int degree, const double* x, const double* y, const double* k,
+                         Lanes* sums) {
+  constexpr std::size_t four = 4;
+  Lanes powers[four][wide];
+  double term[four];
+  for (std::size_t i = 0; i < four; ++i) {
+    eight_powers(x[i], powers[i][0]);
+    if constexpr (wide > 1) {
+      const double x2 = x[i] * x[i], x4 = x2 * x2;
+      for (std::size_t w = 1; w < wide; ++w) powers[i][w] = powers[i][w - 1] * (x4 * x4);
+    }
+    term[i] = k[i];
+  }
+  for (int b = 0; b <= degree; ++b, sums += wide) {
+    for (std::size_t w = 0; w < wide; ++w) {
+      if (static_cast<int>(w * fit_lanes) > degree - b) break;
+      Lanes sum = sums[w];
+      for (std::size_t i = 0; i < four; ++i) sum += term[i] * powers[i][w];
+      sums[w] = sum;
+    }
+    for (std::size_t i = 0; i < four; ++i) term[i] *= y[i];
+  }
+}
+
+template <std::size_t wide>
+void moments_of(int degree, const double* x, const double* y, const double* dx, const double* dy,
+                std::size_t count, const FitFrame& frame, const FitDivisors& divisors,
+                double* moments) {
+  Lanes sums[(max_fit_moments + 1) * wide];
   for (std::size_t i = 0; i < static_cast<std::size_t>(degree + 1) * wide; ++i) sums[i] = Lanes{};
   const double sx = 1.0 / frame.half[0], sy = 1.0 / frame.half[1];
   for (std::size_t at = 0; at < count; at += fit_lanes) {
     const Lanes px = (load(x + at) - frame.centre[0]) * sx;
     const Lanes py = (load(y + at) - frame.centre[1]) * sy;
-    const Lanes k = px * (load(dy + at) * sy) - py * (load(dx + at) * sx);
-    const std::size_t here = std::min(fit_lanes, count - at);
-    for (std::size_t l = 0; l < here; ++l) {
-      const double p = px[l], q = py[l];
-      Lanes powers[max_fit_vectors];
-      eight_powers(p, powers[0]);
-      if (wide > 1) {
-        const double p2 = p * p, p4 = p2 * p2;
-        for (std::size_t w = 1; w < wide; ++w) powers[w] = powers[w - 1] * (p4 * p4);
-      }
-      double term = k[l];
-      Lanes* row = sums;
-      for (int b = 0; b <= degree; ++b, row += wide) {
-        const auto own = static_cast<std::size_t>(degree - b) / fit_lanes;
-        for (std::size_t w = 0; w <= own; ++w) row[w] += term * powers[w];
-        term *= q;
-      }
-    }
+    double own_x[fit_lanes], own_y[fit_lanes], k[fit_lanes];
+    store(px, own_x);
+    store(py, own_y);
+    store(px * (load(dy + at) * sy) - py * (load(dx + at) * sx), k);
+    add_four<wide>(degree, own_x, own_y, k, sums);
+    if (at + 4 < count) add_four<wide>(degree, own_x + 4, own_y + 4, k + 4, sums);
   }
   for (int b = 0; b <= degree; ++b) {
     for (std::size_t w = 0; w < wide; ++w) {
@@ -238,6 +279,14 @@ void moments_target(int degree, const double* x, const double* y, const double* 
       store(sums[at] * load(divisors.value[b] + w * fit_lanes), moments + at * fit_lanes);
     }
   }
+}
+
+void moments_target(int degree, const double* x, const double* y, const double* dx,
+                    const double* dy, std::size_t count, const FitFrame& frame,
+                    const FitDivisors& divisors, double* moments) {
+  if (degree < 8) return moments_of<1>(degree, x, y, dx, dy, count, frame, divisors, moments);
+  if (degree < 16) return moments_of<2>(degree, x, y, dx, dy, count, frame, divisors, moments);
+  return moments_of<3>(degree, x, y, dx, dy, count, frame, divisors, moments);
 }
 
 template <int fixed>
@@ -284,6 +333,43 @@ void values_target(int degree, int components, const double* scaled, const doubl
   return values_of<-1>(degree, components, scaled, mean, padded, u, v, values);
 }
 
+/// Two functions at once.
+void tails_target(std::size_t count, std::size_t high, const double* matrix, const double* u,
+                  const double* v, double* out) {
+  for (std::size_t n = 0; n < high; n += fit_lanes) {
+    Lanes first{}, second{};
+    for (std::size_t q = 0; q < count; ++q) {
+      const Lanes row = load(matrix + q * high + n);
+      first += u[q] * row;
+      second += v[q] * row;
+    }
+    store(first, out + n);
+    store(second, out + high + n);
+  }
+}
+
+/// Sums of w psi_i psi_j and w psi_i over points, psi the powers of a degree.
+void products_target(int degree, std::size_t padded, const double* weight, const double* u,
+                     const double* v, double* products, double* integrals) {
+  constexpr auto most = static_cast<std::size_t>(bernstein::triangle_size(max_fit_powers));
+  const auto size = static_cast<std::size_t>(bernstein::triangle_size(degree));
+  Lanes psi[most], plain[most], sums[most * (most + 1) / 2];
+  for (std::size_t i = 0; i < size; ++i) plain[i] = Lanes{};
+  for (std::size_t i = 0; i < size * (size + 1) / 2; ++i) sums[i] = Lanes{};
+  for (std::size_t at = 0; at < padded; at += fit_lanes) {
+    const Lanes s = load(u + at), t = load(v + at), w = load(weight + at);
+    powers_of<-1>(degree, s, t, psi);
+    Lanes* sum = sums;
+    for (std::size_t i = 0; i < size; ++i) {
+      const Lanes own = w * psi[i];
+      plain[i] += own;
+      for (std::size_t j = 0; j <= i; ++j, ++sum) *sum += own * psi[j];
+    }
+  }
+  for (std::size_t i = 0; i < size; ++i) integrals[i] = sum_of(plain[i]);
+  for (std::size_t i = 0; i < size * (size + 1) / 2; ++i) products[i] = sum_of(sums[i]);
+}
+
 void interpolate_target(std::size_t count, std::size_t padded, std::size_t terms,
                         const double* matrix, int components, const double* values, double* out) {
   for (int c = 0; c < components; ++c) {
@@ -301,48 +387,45 @@ void interpolate_target(std::size_t count, std::size_t padded, std::size_t terms
   }
 }
 
-/// Rows of the integrals of f m in the region's frame. W: vectors in a row.
-template <std::size_t W>
-HWY_INLINE void contract(int fit_degree, int degree, const double* terms, const double* moments,
-                         std::size_t stride, Lanes* rows) {
-  for (int d = 0; d <= degree; ++d) {
-    Lanes sum[W] = {};
-    int n = 0;
-    for (int b = 0; b <= fit_degree; ++b) {
-      const double* from = moments + static_cast<std::size_t>(b + d) * stride;
-      for (int a = 0; a <= fit_degree - b; ++a, ++n)
-        for (std::size_t w = 0; w < W; ++w)
-          sum[w] += terms[n] * load(from + a + static_cast<int>(w * fit_lanes));
-    }
-    for (std::size_t w = 0; w < W; ++w) rows[static_cast<std::size_t>(d) * W + w] = sum[w];
-  }
-}
-
-template <std::size_t W>
+/// K: the degree of the target's monomials when known at compile time (below 8), or -1.
+template <int K>
 void add_of(int fit_degree, std::size_t terms_count, int degree, int components,
             const double* terms, const double* moments, const FitFrame& frame,
             const std::array<double, 2>& centre, const double (*binomials)[2 * fit_lanes],
             double* sums) {
+  constexpr std::size_t W = K >= 0 ? 1 : 2;    // vectors in a row
   constexpr std::size_t room = W * fit_lanes;  // > degree
+  constexpr std::size_t most = K >= 0 ? static_cast<std::size_t>(K) + 1 : room;
+  const std::size_t rows = K >= 0 ? most : static_cast<std::size_t>(degree + 1);
   const std::size_t stride = fit_stride(fit_degree + degree);
-  const auto rows = static_cast<std::size_t>(degree + 1);
   // x - centre = shift + half xi: (x - centre)^c = sum_a C(c, a) shift^(c-a) half^a xi^a.
   const double sx = frame.centre[0] - centre[0], sy = frame.centre[1] - centre[1];
-  const double area = frame.half[0] * frame.half[1];
-  double move[room][room] = {};
-  double power[room];
-  power[0] = 1.0;
-  for (std::size_t i = 1; i < rows; ++i) power[i] = power[i - 1] * sx;
-  double scale = area;
+  double power[2 * room] = {};  // power[room + i] = shift^i, before it zeros
+  power[room] = 1.0;
+  for (std::size_t i = 1; i < rows; ++i) power[room + i] = power[room + i - 1] * sx;
+  Lanes move[most * W];
+  double scale = frame.half[0] * frame.half[1];
   for (std::size_t a = 0; a < rows; ++a) {
-    for (std::size_t c = a; c < rows; ++c) move[a][c] = binomials[c][a] * power[c - a] * scale;
+    for (std::size_t w = 0; w < W; ++w)
+      move[a * W + w] =
+          scale * (load(binomials[a] + w * fit_lanes) * load(power + room + w * fit_lanes - a));
     scale *= frame.half[0];
   }
   for (int c = 0; c <= components; ++c) {
-    Lanes own[room * W];
+    Lanes own[most * W];
     if (c < components) {
-      contract<W>(fit_degree, degree, terms + static_cast<std::size_t>(c) * terms_count, moments,
-                  stride, own);
+      // In the region's frame.
+      for (std::size_t i = 0; i < rows * W; ++i) own[i] = Lanes{};
+      const double* term = terms + static_cast<std::size_t>(c) * terms_count;
+      for (int b = 0; b <= fit_degree; ++b) {
+        const double* from = moments + static_cast<std::size_t>(b) * stride;
+        for (int a = 0; a <= fit_degree - b; ++a, ++from, ++term) {
+          const double value = *term;
+          for (std::size_t d = 0; d < rows; ++d)
+            for (std::size_t w = 0; w < W; ++w)
+              own[d * W + w] += value * load(from + d * stride + w * fit_lanes);
+        }
+      }
     } else {
       for (std::size_t d = 0; d < rows; ++d)
         for (std::size_t w = 0; w < W; ++w)
@@ -355,7 +438,7 @@ void add_of(int fit_degree, std::size_t terms_count, int degree, int components,
       for (std::size_t w = 0; w < W; ++w) store(own[d * W + w], from + w * fit_lanes);
       Lanes to[W] = {};
       for (std::size_t a = 0; a < rows - d; ++a)
-        for (std::size_t w = 0; w < W; ++w) to[w] += from[a] * load(move[a] + w * fit_lanes);
+        for (std::size_t w = 0; w < W; ++w) to[w] += from[a] * move[a * W + w];
       for (std::size_t w = 0; w < W; ++w) own[d * W + w] = factor * to[w];
       factor *= frame.half[1];
     }
@@ -373,11 +456,30 @@ void add_target(int fit_degree, std::size_t terms_count, int degree, int compone
                 const double* terms, const double* moments, const FitFrame& frame,
                 const std::array<double, 2>& centre, const double (*binomials)[2 * fit_lanes],
                 double* sums) {
-  if (degree < 8)
-    return add_of<1>(fit_degree, terms_count, degree, components, terms, moments, frame, centre,
-                     binomials, sums);
-  return add_of<2>(fit_degree, terms_count, degree, components, terms, moments, frame, centre,
-                   binomials, sums);
+  const auto add = [&](auto own) {
+    add_of<decltype(own)::value>(fit_degree, terms_count, degree, components, terms, moments, frame,
+                                 centre, binomials, sums);
+  };
+  switch (degree) {
+    case 0:
+      return add(std::integral_constant<int, 0>());
+    case 1:
+      return add(std::integral_constant<int, 1>());
+    case 2:
+      return add(std::integral_constant<int, 2>());
+    case 3:
+      return add(std::integral_constant<int, 3>());
+    case 4:
+      return add(std::integral_constant<int, 4>());
+    case 5:
+      return add(std::integral_constant<int, 5>());
+    case 6:
+      return add(std::integral_constant<int, 6>());
+    case 7:
+      return add(std::integral_constant<int, 7>());
+    default:
+      return add(std::integral_constant<int, -1>());
+  }
 }
 
 double dot_target(std::size_t count, const double* a, const double* b) {
@@ -483,6 +585,20 @@ FitTable::FitTable(int with_degree)
   for (std::size_t n = 0; n < count; ++n)
     for (std::size_t q = 0; q < count; ++q)
       chebyshev[q * terms + n] = static_cast<double>(columns[n * count + q]);
+  if (d > 1) {
+    high = fit_padded(2 * static_cast<std::size_t>(d) + 3);
+    tails.assign(count * high, 0.0);
+    std::size_t to = 0;
+    const auto keep = [&](int a, int b) {
+      const auto n = static_cast<std::size_t>(bernstein::triangle_index(d, a, b));
+      for (std::size_t q = 0; q < count; ++q) tails[q * high + to] = chebyshev[q * terms + n];
+      ++to;
+    };
+    for (int total = d; total >= d - 1; --total)
+      for (int b = 0; b <= total; ++b) keep(total - b, b);
+    keep(1, 0);
+    keep(0, 1);
+  }
   x.resize(padded, x.back());
   y.resize(padded, y.back());
 }
@@ -558,6 +674,8 @@ HWY_EXPORT(curve_target);
 HWY_EXPORT(moments_target);
 HWY_EXPORT(values_target);
 HWY_EXPORT(interpolate_target);
+HWY_EXPORT(tails_target);
+HWY_EXPORT(products_target);
 HWY_EXPORT(add_target);
 HWY_EXPORT(dot_target);
 
@@ -574,7 +692,7 @@ bool fit_invert(const MapPolynomial& map, std::size_t blocks, const double* x, c
 void fit_curve(std::span<const Vec2> control, const Vec2& origin, double from, double step,
                std::size_t blocks, const double* node, const double* weight, double* x, double* y,
                double* dx, double* dy) {
-  std::array<double, max_fit_map + 1> px{}, py{};
+  std::array<double, max_fit_map + 1> px, py;
   for (std::size_t i = 0; i < control.size(); ++i) {
     px[i] = control[i].x() - origin.x();
     py[i] = control[i].y() - origin.y();
@@ -616,20 +734,14 @@ void fit_interpolate(const FitTable& table, int components, const double* values
 }
 
 std::array<double, 2> fit_tails(const FitTable& table, const double* u, const double* v) {
-  std::array<double, fit_padded(bernstein::triangle_size(max_fit_degree))> terms;
-  const int d = table.degree;
-  double high = 0.0, next = 0.0, linear = 0.0;
-  for (const double* values : {u, v}) {
-    HWY_DYNAMIC_DISPATCH(interpolate_target)
-    (table.count, 0, table.terms, table.chebyshev.data(), 1, values, terms.data());
-    const auto size = [&](int a, int b) {
-      return std::abs(terms[static_cast<std::size_t>(bernstein::triangle_index(d, a, b))]);
-    };
-    for (int b = 0; b <= d; ++b) high += size(d - b, b);
-    for (int b = 0; b < d; ++b) next += size(d - 1 - b, b);
-    linear += size(1, 0) + size(0, 1);
-  }
-  return {high / linear, next / linear};
+  std::array<double, 2 * fit_padded(2 * max_fit_degree + 3)> found;
+  HWY_DYNAMIC_DISPATCH(tails_target)
+  (table.count, table.high, table.tails.data(), u, v, found.data());
+  const auto d = static_cast<std::size_t>(table.degree);
+  double size[3] = {0.0, 0.0, 0.0};
+  for (std::size_t i = 0; i < 2 * d + 3; ++i)
+    size[i <= d ? 0 : i <= 2 * d ? 1 : 2] += std::abs(found[i]) + std::abs(found[table.high + i]);
+  return {size[0] / size[2], size[1] / size[2]};
 }
 
 void fit_add(const FitTable& table, int degree, int components, const double* terms,
@@ -637,14 +749,19 @@ void fit_add(const FitTable& table, int degree, int components, const double* te
              double* sums) {
   static const auto binomials = [] {
     std::array<std::array<double, 2 * fit_lanes>, 2 * fit_lanes> made{};
-    for (std::size_t n = 0; n < 2 * fit_lanes; ++n)
+    for (std::size_t n = 0; n < 2 * fit_lanes; ++n)  // [k][n], zeros where k > n
       for (std::size_t k = 0; k <= n; ++k)
-        made[n][k] = binomial(static_cast<int>(n), static_cast<int>(k));
+        made[k][n] = binomial(static_cast<int>(n), static_cast<int>(k));
     return made;
   }();
   HWY_DYNAMIC_DISPATCH(add_target)
   (table.degree, table.terms, degree, components, terms, moments, frame, centre,
    reinterpret_cast<const double(*)[2 * fit_lanes]>(binomials.data()), sums);
+}
+
+void fit_products(int degree, std::size_t padded, const double* weight, const double* u,
+                  const double* v, double* products, double* integrals) {
+  HWY_DYNAMIC_DISPATCH(products_target)(degree, padded, weight, u, v, products, integrals);
 }
 
 double fit_dot(int degree, const double* a, const double* b) {

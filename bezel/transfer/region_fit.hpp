@@ -39,6 +39,8 @@ struct FitTable {
   std::vector<double> chebyshev;  ///< [point][term]: coefficients of T_a(x) T_b(y), in the order of
                                   ///< triangle_index(degree, a, b), of the function that is 1 at
                                   ///< the point
+  std::size_t high = 0;
+  std::vector<double> tails;  ///< [point][high]: of those the two highest degrees' and degree 1's
 };
 /// @param degree 0 .. max_fit_degree
 const FitTable& fit_table(int degree);
@@ -51,6 +53,8 @@ struct MapPolynomial {
   double centre = 0.0;
   Vec2 base;
   std::vector<double> x, y;
+  MapPolynomial() = default;
+  MapPolynomial(int with_degree, std::span<const Vec2> control) { set(with_degree, control); }
   /// The map of a triangle with these control points, about its centroid.
   void set(int with_degree, std::span<const Vec2> control);
   /// base + first u + second v.
@@ -116,6 +120,12 @@ std::array<double, 2> fit_tails(const FitTable& table, const double* u, const do
 void fit_add(const FitTable& table, int degree, int components, const double* terms,
              const double* moments, const FitFrame& frame, const std::array<double, 2>& centre,
              double* sums);
+
+/// products[i, j <= i, row by row] = sum of w psi_i psi_j over the points, integrals[i] = sum of
+/// w psi_i, psi the powers of the barycentrics (1-u-v, u, v) of a degree.
+/// @param degree 0 .. 10
+void fit_products(int degree, std::size_t padded, const double* weight, const double* u,
+                  const double* v, double* products, double* integrals);
 
 /// sum over the rows of a . b; both of the same degree.
 double fit_dot(int degree, const double* a, const double* b);
