@@ -164,7 +164,7 @@ void ElementTransfer::add_pair_moments(const Group& g, std::int32_t t, std::int3
 bool ElementTransfer::can_batch(const Group& g) {
   const int degree = g.target_space->uniform_degree();
   return !g.donor_mapped && !g.target_mapped && degree >= 0 && degree <= max_moment_degree &&
-         degree == g.donor_space->uniform_degree();
+         degree == g.donor_degree.uniform;
 }
 
 TargetPlace ElementTransfer::target_place(const Group& g, std::int32_t t) {
@@ -198,7 +198,7 @@ void ElementTransfer::fill_batch(std::span<const BoundaryPiece> pieces) {
   return fill_curves<4>(pieces);
 }
 
-std::span<const Segment> ElementTransfer::run_of(const ElementPieces& own, std::size_t k) {
+std::span<const Segment> ElementTransfer::all_runs(const ElementPieces& own) {
   if (!have_segments_) {
     have_segments_ = true;
     collect_segments(own, segments_);
@@ -209,8 +209,7 @@ std::span<const Segment> ElementTransfer::run_of(const ElementPieces& own, std::
       run_end_.push_back(end);
     }
   }
-  const std::size_t begin = k == 0 ? 0 : run_end_[k - 1];
-  return std::span<const Segment>(segments_).subspan(begin, run_end_[k] - begin);
+  return segments_;
 }
 
 bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, std::size_t first,
@@ -310,10 +309,6 @@ void ElementTransfer::moments_to_powers(std::size_t i, std::int32_t t) {
   const Group& g = groups_[i];
   const Accumulators& moments = moment_sums_[i];
   Accumulators& sums = sums_[i];
-  const auto nc = static_cast<std::size_t>(g.components);
-  // What is there so far (parts that no donor covers) has the whole polynomials.
-  for (std::size_t n = 0; n < sums.basis.size(); ++n)
-    for (std::size_t c = 0; c < nc; ++c) sums.product[n * nc + c] -= base_[i][c] * sums.basis[n];
   const int degree = g.target_space->degree(ElementId(t));
   powers_from_moments(degree, 1, moments.basis.data(), sums.basis.data());
   powers_from_moments(degree, g.components, moments.product.data(), sums.product.data());

@@ -40,8 +40,13 @@ ElementTransfer::ElementTransfer(const OverlayMesh& donor, const OverlayMesh& ta
       base_(groups.size()),
       have_moments_(groups.size()),
       extended_(groups.size()),
-      batched_(groups.size()) {
-  for (std::size_t i = 0; i < groups.size(); ++i) batched_[i] = can_batch(groups[i]) ? 1 : 0;
+      batched_(groups.size()),
+      fit_(donor, target, groups.size()),
+      fitted_(groups.size()) {
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    batched_[i] = can_batch(groups[i]) ? 1 : 0;
+    fitted_[i] = batched_[i] == 0 && PairFit::can(groups[i], donor, target) ? 1 : 0;
+  }
 }
 
 void ElementTransfer::Accumulators::reset(std::size_t functions, std::size_t components) {
@@ -347,6 +352,22 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
     mass[c] = total.mass[c] + donor_mass[c] / donor_area * (area - weight);
 }
 
+std::span<const std::array<Vec2, 2>> ElementTransfer::plane_bridges() {
+  plane_bridges_.clear();
+  for (const Bridge& bridge : bridges_)
+    plane_bridges_.push_back({origin_ + bridge.from, bridge.step});
+  return plane_bridges_;
+}
+
+// What is in the sums so far has the whole polynomials.
+void ElementTransfer::subtract_base(std::size_t i) {
+  const std::vector<double>& base = base_[i];
+  Accumulators& sums = sums_[i];
+  for (std::size_t n = 0; n < sums.basis.size(); ++n)
+    for (std::size_t c = 0; c < base.size(); ++c)
+      sums.product[n * base.size() + c] -= base[c] * sums.basis[n];
+}
+
 void ElementTransfer::begin_moments(std::size_t i) {
   if (have_moments_[i] != 0) return;
   have_moments_[i] = 1;
@@ -421,6 +442,14 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
       begin_moments(i);
       add_batched(i, t, own, summed && i == first_batched, region_mass_);
     }
+    const bool fitted = fitted_[i] != 0 && !own.donors.empty();
+    // Open joints are bridged by the other rules; masses of mapped donors are all by one rule, for
+    // its errors cancel between neighbours.
+    const bool fits = fitted && !loose_;
+    if (fitted) {
+      fit_.begin(i, g, t, all_runs(own), blocks == nullptr);
+      base_[i].assign(fit_.constants().begin(), fit_.constants().end());
+    }
     double* to = given.mass.data() + first_given * components + c0;
     for (std::size_t k = 0; k < own.donors.size(); ++k) {
       const std::int32_t d = own.donors[k];
@@ -439,13 +468,21 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
         add_extension(g, t, run, area, run_shape(run).centre, sums_[i], here);
         for (std::size_t c = 0; c < nc; ++c) made[c0 + c] += here[c];
       } else if (!batched) {
-        const auto run = run_of(own, k);
-        const RunShape shape = run_shape(run);
-        if (blocks == nullptr && by_moments(g, t, d)) {
-          begin_moments(i);
-          add_pair_moments(g, t, d, shape, base_[i].data(), moment_sums_[i], here);
+        if (fits && fit_.add(d, run_begin(k), run_end_[k], area, here)) {
+          if (blocks != nullptr) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
         } else {
-          add_pair(g, t, d, run, area, shape.centre, sums_[i], here);
+          const auto run = run_of(own, k);
+          const RunShape shape = run_shape(run);
+          if (blocks == nullptr && by_moments(g, t, d)) {
+            begin_moments(i);
+            add_pair_moments(g, t, d, shape, base_[i].data(), moment_sums_[i], here);
+          } else if (fits || (fitted && g.donor_mapped)) {
+            fitted_mass_.assign(nc, 0.0);
+            add_pair(g, t, d, run, area, shape.centre, sums_[i], fitted_mass_);
+            if (loose_) fit_.mass_of(d, run_begin(k), run_end_[k], area, plane_bridges(), here);
+          } else {
+            add_pair(g, t, d, run, area, shape.centre, sums_[i], here);
+          }
         }
       }
       for (std::size_t c = 0; c < nc; ++c) masses_[c0 + c] += here[c];
@@ -454,6 +491,10 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
       to += components;
       if (blocks != nullptr) keep_pair(d, sums_[i], here, *blocks);
     }
+    if (blocks == nullptr) subtract_base(i);
+    if (fits) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
+    // Donors of several degrees: what is not summed by moments is in the other sums.
+    if (!batched) extended_[i] = 1;
     c0 += nc;
   }
   if (loose_ && blocks == nullptr && components > 0) give_strips(t, own, components, given, made);

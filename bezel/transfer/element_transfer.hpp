@@ -16,6 +16,7 @@
 #include "bezel/transfer/mass_rule.hpp"
 #include "bezel/transfer/moments.hpp"
 #include "bezel/transfer/overlay.hpp"
+#include "bezel/transfer/pair_fit.hpp"
 #include "bezel/transfer/piece_batch.hpp"
 #include "bezel/transfer/transfer.hpp"
 
@@ -93,6 +94,8 @@ class ElementTransfer {
   /// Also fills piece_control_ and bridges_.
   RunShape run_shape(std::span<const Segment> run);
   double bridge_joints();
+  /// Starts and steps of bridges_ in the plane.
+  std::span<const std::array<Vec2, 2>> plane_bridges();
   bool is_closed(std::int32_t t, std::int32_t d, double gap) const;
   void give_strips(std::int32_t t, const ElementPieces& own, std::size_t components,
                    GivenList& given, std::span<double> made);
@@ -109,6 +112,7 @@ class ElementTransfer {
   static bool can_batch(const Group& g);
   static TargetPlace target_place(const Group& g, std::int32_t t);
   void begin_moments(std::size_t group);
+  void subtract_base(std::size_t group);
   void fill_batch(std::span<const BoundaryPiece> pieces);
   template <std::size_t points>
   void fill_curves(std::span<const BoundaryPiece> pieces);
@@ -118,8 +122,14 @@ class ElementTransfer {
   /// Group i on all regions, their sums already in the batch when `summed`.
   void add_batched(std::size_t i, std::int32_t t, const ElementPieces& own, bool summed,
                    std::span<double> mass);
+  /// The segments around all regions, one region after the other.
+  std::span<const Segment> all_runs(const ElementPieces& own);
   /// The segments around region k.
-  std::span<const Segment> run_of(const ElementPieces& own, std::size_t k);
+  std::span<const Segment> run_of(const ElementPieces& own, std::size_t k) {
+    const auto all = all_runs(own);
+    return all.subspan(run_begin(k), run_end_[k] - run_begin(k));
+  }
+  std::size_t run_begin(std::size_t k) const { return k == 0 ? 0 : run_end_[k - 1]; }
   void note_region(std::int32_t t, std::int32_t d, double area, double gap,
                    ElementOutcome& outcome) const;
   void flush(const Group& g, std::int32_t d, int target_degree, Accumulators& sums);
@@ -148,6 +158,12 @@ class ElementTransfer {
   /// The same for group i on a covered straight element, when it went by moments alone.
   bool finish_straight(std::size_t i, std::int32_t t, std::span<const double> mass, double area,
                        std::span<double> result, ElementOutcome& outcome);
+  struct Solution;
+  /// As finish(), for up to `width` components from number c0 on.
+  template <std::size_t width>
+  static void finish_components(const Solution& s, const Accumulators& sums,
+                                std::span<const double> mass, std::span<const double> base,
+                                std::size_t c0, std::span<double> result, ElementOutcome& outcome);
   const MassRule& mass_rule(int degree);
   static bool factorize(std::size_t n, Factor& factor);
   /// @param whole  moments of the element up to twice the degree, when known
@@ -190,6 +206,7 @@ class ElementTransfer {
     Vec2 from, step;
   };
   std::vector<Bridge> bridges_;
+  std::vector<std::array<Vec2, 2>> plane_bridges_;
   std::vector<Vec2> piece_starts_, piece_ends_;
   bool loose_ = false;  // this element's joints may be open a little
   std::vector<MomentPiece> moment_pieces_;
@@ -215,8 +232,11 @@ class ElementTransfer {
   std::vector<double> powers_;
   std::vector<std::vector<double>> base_;   // by group, [component]: taken off before integrating
   std::vector<std::uint8_t> have_moments_;  // by group: for this element
-  std::vector<std::uint8_t> extended_;      // by group: into what no donor covers of this element
+  std::vector<std::uint8_t> extended_;      // by group: sums_ hold what moment_sums_ lack
   std::vector<std::uint8_t> batched_;       // by group: goes by add_batched
+  PairFit fit_;
+  std::vector<std::uint8_t> fitted_;  // by group: goes by fit_
+  std::vector<double> fitted_mass_;
   std::vector<double> masses_;
   std::vector<double> scratch_;
   std::vector<MassRule> mass_rules_;

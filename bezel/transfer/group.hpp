@@ -15,6 +15,12 @@ namespace bezel::detail {
 /// The triangle itself as a frame: lambda_k are its barycentrics.
 Frame affine_frame(const std::array<Vec2, 3>& corners);
 
+/// Degrees of a donor's elements.
+struct DonorDegree {
+  int highest = 0;
+  int uniform = -1;  ///< -1 when they differ
+};
+
 /// The components of all donor fields that share a donor space and go to the same target space.
 struct Group {
   Group(const OverlayMesh& donor, const OverlayMesh& target, std::span<const Field* const> fields,
@@ -25,9 +31,16 @@ struct Group {
         std::shared_ptr<const Space> donor_space, std::shared_ptr<const Space> target_space,
         int threads);
 
+  /// On parts of the meshes: `scaled` and `donor_mass` are those of a group on the whole ones.
+  Group(const OverlayMesh& donor, const OverlayMesh& target,
+        std::shared_ptr<const Space> donor_space, std::shared_ptr<const Space> target_space,
+        int components, DonorDegree donor_degree, std::vector<double> scaled,
+        std::vector<double> donor_mass);
+
   std::shared_ptr<const Space> donor_space, target_space;
   std::shared_ptr<const Space> continuous_space;  ///< where the result is projected next, or null
   int components = 0;
+  DonorDegree donor_degree;          ///< of the whole donor, on a part too
   bool donor_mapped, target_mapped;  ///< polynomial in reference coordinates of a curved element
   std::vector<Frame>
       donor_frame;  ///< affine triangles of the donor's polynomials that are not mapped
@@ -38,6 +51,7 @@ struct Group {
                                           ///< target element; empty when the space has none
   std::vector<double> scaled;             ///< donor coefficients times multinomials, per element
                                           ///< [component][n]; of basis functions per degree
+  std::vector<double> donor_integrals;    ///< of the donor's basis functions; not of basis groups
   std::vector<double> donor_mass;         ///< per element [component]
   /// Coefficients of the monomials in the barycentrics less 1/3, per element [component][n]: of
   /// donors that are not mapped and have at most max_moment_degree.
@@ -54,12 +68,10 @@ struct Group {
   }
 
  private:
+  void make_powers(std::size_t elements);
   void make_frames(const OverlayMesh& donor, const OverlayMesh& target);
   std::vector<std::size_t> scaled_offset_;  // per degree, for basis functions
 };
-
-/// Integral of each basis function over its element, in the order of the coefficients.
-std::vector<double> basis_integrals(const std::shared_ptr<const Space>& space, int threads);
 
 /// Where point x lies for the polynomial of donor element d: barycentrics 1 and 2 in its frame, or
 /// in the reference triangle when it is mapped. `warm`: the last barycentrics found in d, when

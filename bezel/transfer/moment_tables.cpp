@@ -72,7 +72,7 @@ PieceTable::PieceTable(int degree_in, int moments)
 }
 
 const std::vector<double>& power_matrix(int degree) {
-  constexpr int highest = 2 * max_moment_degree;
+  constexpr int highest = max_power_degree;
   static const auto matrices = [] {
     std::array<std::vector<double>, highest + 1> all;
     for (int d = 0; d <= highest; ++d) {

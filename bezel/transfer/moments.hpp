@@ -20,6 +20,9 @@ namespace bezel::detail {
 /// Highest field degree that is integrated by moments.
 inline constexpr int max_moment_degree = 3;
 
+/// Highest degree of power_matrix and powers_from_moments.
+inline constexpr int max_power_degree = 10;
+
 /// Points that are worked on together.
 inline constexpr std::size_t moment_lanes = 8;
 

@@ -103,6 +103,10 @@ FrontSearch::FrontSearch(const OverlayMesh& mesh) : mesh_(mesh), tree_(mesh.elem
   if (mesh.degree == 1) straight_ = straight_elements(mesh);
 }
 
+FrontSearch::FrontSearch(const OverlayMesh& part, bool connected) : FrontSearch(part) {
+  connected_ = connected;
+}
+
 void FrontSearch::collect_edges_at_vertices() {
   const std::size_t vertices = mesh_.mesh->node_count();
   vertex_offset_.assign(vertices + 1, 0);

@@ -40,7 +40,11 @@ struct OverlayMesh {
   std::vector<double> element_diameter;  ///< of the boxes
   std::vector<double> edge_width;        ///< smallest width of the elements beside each edge
   Box2 box;
+  std::vector<std::int32_t> numbers;  ///< of a part of a mesh: the elements' numbers in the whole
 
+  std::int32_t number_of(std::int32_t e) const {
+    return numbers.empty() ? e : numbers[static_cast<std::size_t>(e)];
+  }
   std::size_t element_count() const { return element_box.size(); }
   std::span<const Vec2> edge(std::int32_t e) const {
     const auto n = static_cast<std::size_t>(degree + 1);
@@ -71,6 +75,8 @@ struct OverlayMesh {
 class FrontSearch {
  public:
   explicit FrontSearch(const OverlayMesh& mesh);
+  /// Of a part of a mesh: `connected` is what the whole mesh is.
+  FrontSearch(const OverlayMesh& part, bool connected);
 
   /// Per-thread memory of the walk.
   struct Memory {
