@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <cctype>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -13,6 +14,7 @@
 #include "bezel/transfer/distributed.hpp"
 #include "cli/command.hpp"
 #include "cli/output.hpp"
+#include "cli/progress_bar.hpp"
 
 namespace bezel::cli {
 namespace {
@@ -133,7 +135,10 @@ int main(int argc, char** argv) {
   } catch (const bezel::NumericsError& error) {
     return bezel::cli::fail(bezel::cli::gave_up, error.what());
   } catch (const bezel::Interrupted& error) {
-    return bezel::cli::fail(bezel::cli::interrupted, error.what());
+    return bezel::cli::fail(bezel::cli::ProgressBar::stop_signal() == SIGTERM
+                                ? bezel::cli::terminated
+                                : bezel::cli::interrupted,
+                            error.what());
   } catch (const std::bad_alloc&) {
     return bezel::cli::fail(bezel::cli::gave_up, "out of memory");
   } catch (const std::exception& error) {

@@ -14,10 +14,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-volatile std::sig_atomic_t stop_asked = 0;
+volatile std::sig_atomic_t stop_asked = 0;  // the signal, or 0
 
-void ask_to_stop(int) {
-  stop_asked = 1;
+void ask_to_stop(int signal) {
+  stop_asked = signal;
 }
 
 }  // namespace
@@ -27,7 +27,8 @@ struct ProgressBar::State {
   bool visible = false;  // may be shown at all
   bool shown = false;
   Clock::time_point start = Clock::now(), last = start;
-  struct sigaction previous {};
+  struct sigaction previous_interrupt {
+  }, previous_terminate{};
 
   bool update(double fraction) {
     const auto now = Clock::now();
@@ -54,15 +55,26 @@ ProgressBar::ProgressBar(const Context& context, std::string what)
   struct sigaction action {};
   action.sa_handler = ask_to_stop;
   action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second Ctrl-C ends the program at once
-  ::sigaction(SIGINT, &action, &state_->previous);
+  ::sigaction(SIGINT, &action, &state_->previous_interrupt);
+  ::sigaction(SIGTERM, &action, &state_->previous_terminate);
 }
 
 ProgressBar::~ProgressBar() {
-  ::sigaction(SIGINT, &state_->previous, nullptr);
+  ::sigaction(SIGINT, &state_->previous_interrupt, nullptr);
+  ::sigaction(SIGTERM, &state_->previous_terminate, nullptr);
+  wipe();
+}
+
+void ProgressBar::wipe() {
   if (state_->shown) {
     fmt::print(stderr, "\r\x1b[K");
     std::fflush(stderr);
   }
+  state_->visible = state_->shown = false;
+}
+
+int ProgressBar::stop_signal() {
+  return stop_asked;
 }
 
 Progress ProgressBar::callback() {

@@ -1,5 +1,5 @@
 #pragma once
-// A progress bar on the standard error, and stopping on Ctrl-C.
+// A progress bar on the standard error, and stopping on Ctrl-C or when asked to terminate.
 
 #include <memory>
 
@@ -9,7 +9,8 @@
 namespace bezel::cli {
 
 /// Shows a bar when the standard error is a terminal, after one second, unless --quiet; wipes it at
-/// the end. While it lives, Ctrl-C asks the work to stop (it then throws Interrupted).
+/// the end. While it lives, Ctrl-C (SIGINT) and SIGTERM ask the work to stop (it then throws
+/// Interrupted); work that does not ask, such as writing files, is finished first.
 class ProgressBar {
  public:
   ProgressBar(const Context& context, std::string what);
@@ -17,6 +18,10 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
   ~ProgressBar();
   Progress callback();
+  /// The bar goes, signals still only ask.
+  void wipe();
+  /// The signal that asked to stop last, or 0.
+  static int stop_signal();
 
  private:
   struct State;

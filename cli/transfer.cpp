@@ -318,12 +318,11 @@ int run(const TransferCommand& options, const Context& context) {
 
   TransferResult result;
   std::optional<TransferOperator> matrix;
-  {
-    ProgressBar bar(context, "transfer");
-    result = naming_files(options.donor, options.target, [&] {
-      return move(options, fields, target.mesh, how_to, processes.get(), matrix, bar.callback());
-    });
-  }
+  ProgressBar bar(context, "transfer");  // until the files are whole
+  result = naming_files(options.donor, options.target, [&] {
+    return move(options, fields, target.mesh, how_to, processes.get(), matrix, bar.callback());
+  });
+  bar.wipe();
   Dataset moved;
   moved.mesh = target.mesh;
   moved.fields = std::move(result.fields);

@@ -131,8 +131,8 @@ int transfer_series(const SeriesFiles& files, const TransferOptions& options,
   Json entries = Json::array();
   std::vector<std::vector<FieldReport>> lines;
   std::vector<std::string> names;
+  ProgressBar bar(context, "transfer");  // until the files are whole
   {
-    ProgressBar bar(context, "transfer");
     const Progress shown = bar.callback();
     const auto read_step = [&](std::size_t i) {
       return read_noting(context, beside(files.donor, steps[i].file));
@@ -173,6 +173,7 @@ int transfer_series(const SeriesFiles& files, const TransferOptions& options,
       names.push_back(path);
     }
   }
+  bar.wipe();
   const Json report = {{"schema", "bezel/transfer-series/1"},
                        {"donor", files.donor},
                        {"target", files.target},

@@ -22,7 +22,7 @@ using clock = std::chrono::steady_clock;
 constexpr double silent_gap = 1e-10;
 /// Donor area outside the target, and target area without donor for Conserve::total, below this
 /// fraction of the element is rounding of the sums.
-constexpr double outside_rounding = 1e-14;
+constexpr double outside_rounding = 3e-14;
 
 double seconds_since(clock::time_point start) {
   return std::chrono::duration<double>(clock::now() - start).count();
