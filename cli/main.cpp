@@ -10,6 +10,7 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/base/progress.hpp"
+#include "bezel/transfer/distributed.hpp"
 #include "cli/command.hpp"
 #include "cli/output.hpp"
 
@@ -103,6 +104,11 @@ int run(int argc, char** argv) {
     }
     return fail(usage, usage_message(app, error));
   }
+  const std::string command = app.get_subcommands().front()->get_name();
+  if (const int size = launch().size; size > 1 && command != "transfer") {
+    return fail(usage, fmt::format("{} runs as one process, found {}: start it without mpirun",
+                                   command, size));
+  }
   try {
     return context.run();
   } catch (const UsageError& error) {
@@ -114,6 +120,12 @@ int run(int argc, char** argv) {
 }  // namespace bezel::cli
 
 int main(int argc, char** argv) {
+  // Of several processes that mpirun started the first one speaks.
+  if (bezel::launch().rank > 0) {
+    for (std::FILE* stream : {stdout, stderr}) {
+      if (std::freopen("/dev/null", "w", stream) == nullptr) return bezel::cli::bug;
+    }
+  }
   try {
     return bezel::cli::run(argc, argv);
   } catch (const bezel::InputError& error) {

@@ -15,6 +15,7 @@
 #include "cli/arguments.hpp"
 #include "cli/output.hpp"
 #include "cli/progress_bar.hpp"
+#include "cli/transfer_processes.hpp"
 #include "cli/transfer_series.hpp"
 
 namespace bezel::cli {
@@ -212,10 +213,12 @@ void check_usage(const TransferCommand& options) {
   const bool weighted = !options.weight.empty() || !options.density.empty();
   if (!options.matrix.empty() && weighted)
     throw UsageError("--matrix: not with --weight or --density");
-  if ((!options.matrix.empty() || weighted) &&
-      (options.continuity == "cg" || options.bounds != "none" || options.conserve != "covered")) {
-    throw UsageError(std::string(weighted ? "--weight and --density" : "--matrix") +
-                     ": not with --continuity cg, --bounds or --conserve total");
+  if (!options.matrix.empty() && (options.continuity == "cg" || options.conserve != "covered"))
+    throw UsageError("--matrix: not with --continuity cg or --conserve total");
+  if (weighted &&
+      (options.keep_boundary || options.bounds != "none" || options.conserve != "covered")) {
+    throw UsageError(
+        "--weight and --density: not with --keep-boundary, --bounds or --conserve total");
   }
   if (options.continuity != "cg") {
     if (options.keep_boundary) throw UsageError("--keep-boundary needs --continuity cg");
@@ -261,25 +264,41 @@ TransferOptions transfer_options(const TransferCommand& options, const Context& 
   return how_to;
 }
 
-// transfer(), or the same by an operator whose matrix is asked for.
+// transfer(), the same by several processes, or by an operator whose matrix is asked for.
 TransferResult move(const TransferCommand& options, std::span<const Field> fields,
                     const std::shared_ptr<const TriangleMesh>& target,
-                    const TransferOptions& how_to, std::optional<TransferOperator>& matrix,
-                    const Progress& progress) {
+                    const TransferOptions& how_to, Processes* processes,
+                    std::optional<TransferOperator>& matrix, const Progress& progress) {
+  if (processes != nullptr) return processes->transfer(fields, target, how_to, progress);
   if (options.matrix.empty()) return transfer(fields, target, how_to, progress);
-  matrix.emplace(fields.front().space_ptr(), target, how_to, progress);
+  TransferOptions linear = how_to;
+  linear.bounds = {};
+  matrix.emplace(fields.front().space_ptr(), target, linear, progress);
   for (const Field& f : fields) {
     if (!matrix->accepts(f.space()))
       throw InputError("donor mesh: field '" + f.name() + "' has another degree or basis than '" +
                        fields.front().name() + "', expected fields that share one matrix");
   }
-  return matrix->transfer(fields, how_to.threads);
+  return matrix->transfer(fields, how_to.bounds, how_to.threads);
 }
 
 int run(const TransferCommand& options, const Context& context) {
   check_usage(options);
   const TransferOptions how_to = transfer_options(options, context);
-  if (is_collection(options.donor) || is_collection(options.out)) {
+  const bool series = is_collection(options.donor) || is_collection(options.out);
+  if (launch().size > 1) {
+    if (series) throw UsageError("a time series is moved by one process: start it without mpirun");
+    if (!options.matrix.empty()) throw UsageError("--matrix: by one process only");
+    if (options.mass_method == "petsc")
+      throw UsageError("--mass-method petsc: in one process only");
+  }
+  const std::unique_ptr<Processes> processes = join_processes();
+  if (processes && processes->rank() > 0) {
+    // Several processes with all threads each would be in each other's way.
+    processes->serve(std::max(how_to.threads, 1));
+    return ok;
+  }
+  if (series) {
     if (!options.matrix.empty()) throw UsageError("--matrix: not with a time series");
     if (options.format && options.format != Format::vtu)
       throw UsageError("--format: the steps of a time series are written as vtu");
@@ -302,20 +321,23 @@ int run(const TransferCommand& options, const Context& context) {
   {
     ProgressBar bar(context, "transfer");
     result = naming_files(options.donor, options.target, [&] {
-      return move(options, fields, target.mesh, how_to, matrix, bar.callback());
+      return move(options, fields, target.mesh, how_to, processes.get(), matrix, bar.callback());
     });
   }
   Dataset moved;
   moved.mesh = target.mesh;
   moved.fields = std::move(result.fields);
   moved.time = donor.time;
-  const Json report = to_json(options, result.report);
+  Json report = to_json(options, result.report);
+  if (processes) report["processes"] = processes_json(*processes);
   write_all(options, moved, how, report, matrix ? &*matrix : nullptr, context);
   std::vector<std::string> files = {options.out};
   for (const std::string& file : {options.report, options.matrix}) {
     if (!file.empty()) files.push_back(file);
   }
-  print_or_remove(context.json ? to_text(report) : to_table(result.report, options), files);
+  std::string text = context.json ? to_text(report) : to_table(result.report, options);
+  if (processes && !context.json) text += processes_table(*processes);
+  print_or_remove(text, files);
   if (!context.json && context.verbose > 0) {
     const auto& s = result.report.seconds;
     note(context, fmt::format("{:.3g} s: overlay {:.3g}, integrate {:.3g}, solve {:.3g}", s.total,

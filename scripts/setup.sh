@@ -2,22 +2,25 @@
 # Installs the Debian or Ubuntu packages that Bezel needs and that are missing; touches nothing, and needs no
 # network, when none is.
 #
-# usage: scripts/setup.sh [build|test|ci]
+# usage: scripts/setup.sh [build|test|ci|mpi]
 #   build  library and command line tool (default)
 #   test   ... and the test suite
 #   ci     ... and what the slower checks need (clang 14, benchmarks, ccache)
+#   mpi    what test installs, and Open MPI for builds with -DBEZEL_WITH_MPI=ON
 set -euo pipefail
 
 build=(g++ cmake ninja-build pkg-config libeigen3-dev libhwy-dev libfmt-dev libcli11-dev nlohmann-json3-dev
   libpugixml-dev libtbb-dev libpng-dev zlib1g-dev)
 test=(python3 libgtest-dev libgmock-dev librapidcheck-dev libgmp-dev libmpfr-dev)
 ci=(git libbenchmark-dev libqd-dev clang-14 clang-format-14 clang-tidy-14 ccache)
+mpi=(libopenmpi-dev openmpi-bin)
 
 case "${1:-build}" in
   build) wanted=("${build[@]}") ;;
   test) wanted=("${build[@]}" "${test[@]}") ;;
   ci) wanted=("${build[@]}" "${test[@]}" "${ci[@]}") ;;
-  *) echo "error: found '$1', expected build, test or ci" >&2; exit 2 ;;
+  mpi) wanted=("${build[@]}" "${test[@]}" "${mpi[@]}") ;;
+  *) echo "error: found '$1', expected build, test, ci or mpi" >&2; exit 2 ;;
 esac
 
 if ! command -v dpkg >/dev/null; then

@@ -1,4 +1,4 @@
-# Adds to bench_geometry the libraries that are installed.
+# Adds to bench_geometry and bench_straight what is installed.
 
 # lib2geom: Debian's lib2geom-dev, whose headers need libboost-dev.
 find_library(BEZEL_LIB2GEOM_LIBRARY 2geom)
@@ -32,4 +32,16 @@ if(BEZEL_CARGO AND BEZEL_LYON_CRATE)
   add_dependencies(bench_geometry peer_lyon)
   target_compile_definitions(bench_geometry PRIVATE BEZEL_BENCH_LYON)
   target_link_libraries(bench_geometry PRIVATE ${archive} pthread dl)
+endif()
+
+# FreeFEM: Debian's freefem++, and libfreefem++ for its plugins (P3dc).
+find_program(BEZEL_FREEFEM FreeFem++-nw)
+find_path(BEZEL_FREEFEM_PLUGINS Element_P3dc.so PATHS /usr/lib/freefem++ /usr/lib/ff++/lib NO_DEFAULT_PATH)
+if(BEZEL_FREEFEM AND BEZEL_FREEFEM_PLUGINS)
+  message(STATUS "Benchmarks beside FreeFEM: ${BEZEL_FREEFEM}")
+  target_sources(bench_straight PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/peers/freefem.cpp)
+  target_include_directories(bench_straight PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+  target_compile_definitions(bench_straight PRIVATE
+    BEZEL_FREEFEM="${BEZEL_FREEFEM}" BEZEL_FREEFEM_PLUGINS="${BEZEL_FREEFEM_PLUGINS}"
+    BEZEL_FREEFEM_SCRIPT="${CMAKE_CURRENT_SOURCE_DIR}/peers/freefem.edp")
 endif()

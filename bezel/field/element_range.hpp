@@ -1,5 +1,9 @@
 #pragma once
-// The range of a field on one element.
+// The range of a field on one element, and of many fields on a mesh.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
 
 #include "bezel/field/field.hpp"
 
@@ -12,5 +16,40 @@ namespace bezel {
 /// @throws InputError when the element or component does not exist or tol is negative or NaN
 /// @cost   a physical basis is composed with the element's map first: O((d g)^4)
 bernstein::Range element_range(const Field& field, ElementId e, int component, double tol);
+
+/// value_range() for many fields of one space: what depends on the elements only is done once.
+class ValueRanges {
+ public:
+  /// @throws InputError when the mesh has no elements
+  explicit ValueRanges(std::shared_ptr<const Space> space);
+
+  /// As value_range(). May be called from several threads at once.
+  /// @param field  on the space given, or one with the same elements, degrees and frames
+  /// @cost   one look at the coefficients, and element_range() on the elements that may hold an
+  ///         end: the larger their coefficients the earlier, until none is left that can move it
+  bernstein::Range operator()(const Field& field, int component, double rel_tol = 1e-3) const;
+
+ private:
+  struct Candidate {
+    std::size_t element;
+    double bound;
+  };
+  struct Search {
+    const Field& field;
+    int component;
+    double sign;      // 1: the largest value, -1: minus the smallest
+    double tol;       // wanted
+    double roundoff;  // not worth looking for
+  };
+  double largest(const Search& search, std::vector<Candidate> candidates) const;
+  double attained(const Search& search, std::size_t e) const;
+  double sharp(const Search& search, const Candidate& candidate, double known) const;
+
+  std::shared_ptr<const Space> space_;
+  /// Physical basis: by which share of their width the coefficients' range must be widened to hold
+  /// the values on the element; negative where the element lies too far outside its frame.
+  std::vector<double> widening_;
+  std::vector<std::uint8_t> exact_;  // the element is its frame's triangle, up to rounding
+};
 
 }  // namespace bezel

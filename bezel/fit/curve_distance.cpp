@@ -9,105 +9,127 @@ using small::Vector;
 
 namespace {
 
-// Where to look for the foot of the a-th point: the interpolant of the parameters there, if it is
-// between the parameters of the nodes beside it. Calls in ascending order of a.
+// Where to look for the foot of each point: the interpolant of the parameters there, if it is
+// between the parameters of the nodes beside it.
 template <int dim>
-class Start {
- public:
-  Start(const CurveRung& rung, const Nodes<dim>& nodes) : rung_(rung), nodes_(nodes) {}
-  double operator()(int a) {
-    const auto xi = rung_.basis.nodes();
-    const double x = rung_.xi[std::size_t(a)];
-    while (x > xi[k_ + 1]) ++k_;
-    const double t0 = nodes_.t[k_], t1 = nodes_.t[k_ + 1];
-    double guess = 0.0;
-    for (int k = 0; k <= nodes_.n; ++k) guess += rung_.value_row(a)[k] * nodes_.t[std::size_t(k)];
-    if (guess >= t0 && guess <= t1) return guess;
-    return t0 + (t1 - t0) * ((x - xi[k_]) / (xi[k_ + 1] - xi[k_]));
+void guess_feet(const CurveRung& rung, const Nodes<dim>& nodes, double* s) {
+  small::combine(nodes.n + 1, rung.m, rung.value_columns.data(), nodes.t.data(), s);
+  const auto xi = rung.basis.nodes();
+  std::size_t k = 0;
+  for (int a = 0; a < rung.m; ++a) {
+    const double x = rung.xi[std::size_t(a)];
+    while (x > xi[k + 1]) ++k;
+    const double t0 = nodes.t[k], t1 = nodes.t[k + 1];
+    if (!(s[a] >= t0 && s[a] <= t1)) s[a] = t0 + (t1 - t0) * ((x - xi[k]) / (xi[k + 1] - xi[k]));
   }
+}
 
- private:
-  const CurveRung& rung_;
-  const Nodes<dim>& nodes_;
-  std::size_t k_ = 0;
-};
+// Whether all nodes are within a small part of the gaps beside them.
+template <int dim>
+bool close(const Nodes<dim>& a, const Nodes<dim>& b) {
+  for (std::size_t i = 1; i < std::size_t(a.n); ++i) {
+    const double gap = std::min(a.t[i] - a.t[i - 1], a.t[i + 1] - a.t[i]);
+    if (std::fabs(a.t[i] - b.t[i]) > 0.01 * gap) return false;
+  }
+  return true;
+}
 
 }  // namespace
 
 template <int dim>
 Score<dim> measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const Score<dim>* guess) {
+  using Row = typename Score<dim>::Row;
   const CurveRung& rung = problem.tables.rung(nodes.n);
-  Start<dim> start(rung, nodes);
+  std::array<Row, dim> p, slope;
+  for (std::size_t c = 0; c < dim; ++c) {
+    const double* x = nodes.x[c].data();
+    small::combine(nodes.n + 1, rung.m, rung.value_columns.data(), x, p[c].data());
+    small::combine(nodes.n + 1, rung.m, rung.slope_columns.data(), x, slope[c].data());
+  }
   Score<dim> score;
-  double sum = 0.0, furthest = -1.0;
-  int slowest = 0;
-  for (int a = 0; a < rung.m; ++a) {
-    const double x = rung.xi[std::size_t(a)];
-    const Vec<dim> p = combine(rung.value_row(a), nodes);
-    const double speed = norm(combine(rung.slope_row(a), nodes));
-    const Foot<dim> f = foot(problem.curve, p, guess ? guess->foot[std::size_t(a)].s : start(a));
-    score.foot[std::size_t(a)] = f;
+  score.points = rung.m;
+  if (guess)
+    std::copy(guess->s.begin(), guess->s.begin() + rung.m, score.s.begin());
+  else
+    guess_feet(rung, nodes, score.s.data());
+  double sum = 0.0, length = 0.0, furthest = -1.0;
+  std::size_t slowest = 0;
+  for (std::size_t a = 0; a < std::size_t(rung.m); ++a) {
+    Vec<dim> q;
+    double speed_squared = 0.0;
+    for (std::size_t c = 0; c < dim; ++c) {
+      q.c[c] = p[c][a];
+      speed_squared += slope[c][a] * slope[c][a];
+    }
+    const double speed = std::sqrt(speed_squared);
+    const Foot<dim> f = foot(problem.curve, q, score.s[a]);
+    score.s[a] = f.s;
+    for (std::size_t c = 0; c < dim; ++c) {
+      score.e[c][a] = f.e.c[c];
+      score.tangent[c][a] = f.tangent.c[c];
+    }
     const double distance_squared = dot(f.e, f.e);
-    sum += rung.weight[std::size_t(a)] * speed * distance_squared;
-    score.speed[std::size_t(a)] = speed;
-    if (speed < score.speed[std::size_t(slowest)]) slowest = a;
+    sum += rung.weight[a] * speed * distance_squared;
+    length += rung.weight[a] * speed;
+    score.speed[a] = speed;
+    if (speed < score.speed[slowest]) slowest = a;
     if (distance_squared > furthest) {
       furthest = distance_squared;
-      score.far_xi = x;
+      score.far_xi = rung.xi[a];
     }
   }
   // The least speed lies between points: the vertex of the parabola in the angle through three.
-  double vertex = slowest + 0.5;
-  if (slowest > 0 && slowest + 1 < rung.m) {
+  double vertex = double(slowest) + 0.5;
+  if (slowest > 0 && slowest + 1 < std::size_t(rung.m)) {
     const double* v = score.speed.data() + slowest;
     const double bend = v[-1] - 2.0 * v[0] + v[1];
     if (bend > 0.0) vertex += 0.5 * (v[-1] - v[1]) / bend;
   }
   score.slow_xi = -std::cos(vertex * std::numbers::pi / rung.m);
   score.d2 = std::isfinite(sum) ? std::sqrt(sum) : HUGE_VAL;
-  score.min_speed = score.speed[std::size_t(slowest)] / (0.5 * problem.length);
-  score.valid = nodes.ordered() && score.min_speed >= 1e-3 && std::isfinite(sum);
+  score.min_speed = score.speed[slowest] / (0.5 * problem.length);
+  // An interpolant shrunk to where a closed curve starts would be nearest to it.
+  constexpr double least_speed = 1e-3, least_length = 0.25;
+  score.length = length / problem.length;
+  score.valid = nodes.ordered() && score.min_speed >= least_speed && score.length >= least_length &&
+                std::isfinite(sum);
   return score;
 }
 
 template <int dim>
-double rough_distance(const Problem<dim>& problem, const Nodes<dim>& nodes) {
-  const CurveRung& rung = problem.tables.rung(nodes.n);
-  Start<dim> start(rung, nodes);
-  double sum = 0.0;
-  for (int a = 1; a < rung.m; a += 4) {
-    const Foot<dim> f = foot(problem.curve, combine(rung.value_row(a), nodes), start(a));
-    sum += rung.weight[std::size_t(a)] * dot(f.e, f.e);
-  }
-  return std::sqrt(4.0 * 0.5 * problem.length * sum);
-}
-
-template <int dim>
 int minimise_distance(const Problem<dim>& problem, Nodes<dim>& nodes, Score<dim>& score,
-                      int iterations) {
+                      const DistanceSteps<dim>& steps) {
   const CurveRung& rung = problem.tables.rung(nodes.n);
   const int size = nodes.n - 1;
   // |p'| is frozen in each step, and the derivative of a distance is exact: the foot moves along
   // the curve. In the plane the distance has a sign and gives one residual; in space the residual
   // is the vector normal to the curve.
   const auto build = [&](small::LeastSquares& squares, const Vector& unit) {
-    for (int a = 0; a < rung.m; ++a) {
-      const Vec<dim>& e = score.foot[std::size_t(a)].e;
-      const Vec<dim>& tau = score.foot[std::size_t(a)].tangent;
-      const double weight = std::sqrt(rung.weight[std::size_t(a)] * score.speed[std::size_t(a)]);
-      const double* l = rung.value_row(a) + 1;
-      Vector row;
+    std::array<Vector, dim> d1;
+    for (std::size_t c = 0; c < dim; ++c)
+      for (std::size_t k = 0; k < std::size_t(size); ++k) d1[c][k] = unit[k] * nodes.d1[c][k + 1];
+    for (int at = 0; at < rung.m; ++at) {
+      const std::size_t a = std::size_t(at);
+      const double weight = std::sqrt(rung.weight[a] * score.speed[a]);
+      const double* l = rung.value_row(at) + 1;
       if constexpr (dim == 2) {
-        for (int k = 0; k < size; ++k)
-          row[std::size_t(k)] =
-              l[k] * unit[std::size_t(k)] * cross(tau, nodes.g[std::size_t(k) + 1].d1);
-        squares.add(weight, row.data(), -cross(tau, e));
+        const double tx = weight * score.tangent[0][a], ty = weight * score.tangent[1][a];
+        double* row = squares.next_row();
+        small::scaled_sum(size, l, tx, d1[1].data(), -ty, d1[0].data(), row);
+        row[size] = ty * score.e[0][a] - tx * score.e[1][a];
       } else {
+        Vec<dim> tau, e;
+        for (std::size_t c = 0; c < dim; ++c) {
+          tau.c[c] = score.tangent[c][a];
+          e.c[c] = score.e[c][a];
+        }
         const Vec<dim> across = e - dot(e, tau) * tau;
         for (int c = 0; c < dim; ++c) {
+          Vector row;
           for (int k = 0; k < size; ++k) {
-            const Vec<dim>& d1 = nodes.g[std::size_t(k) + 1].d1;
-            row[std::size_t(k)] = l[k] * unit[std::size_t(k)] * (d1[c] - dot(d1, tau) * tau[c]);
+            Vec<dim> g;
+            for (std::size_t i = 0; i < dim; ++i) g.c[i] = d1[i][std::size_t(k)];
+            row[std::size_t(k)] = l[k] * (g[c] - dot(g, tau) * tau[c]);
           }
           squares.add(weight, row.data(), -across[c]);
         }
@@ -121,14 +143,26 @@ int minimise_distance(const Problem<dim>& problem, Nodes<dim>& nodes, Score<dim>
     score = trial;
     return gain;
   };
-  return levenberg_marquardt(problem, nodes, iterations, 1e-3, build, accept);
+  double before = score.d2;
+  int done_before = 0;
+  const auto pointless = [&](const Nodes<dim>& now, int done) {
+    if (!steps.rival || !score.valid) return false;
+    if (score.d2 < 1.5 * steps.rival_d2 && close(now, *steps.rival)) return true;
+    constexpr int some = 4;
+    if (done < done_before + some) return false;
+    // What the steps left bring if they bring as much as the last ones.
+    const double rate = std::pow(score.d2 / before, 1.0 / (done - done_before));
+    before = score.d2;
+    done_before = done;
+    return score.d2 * std::pow(rate, 2.0 * (steps.most - done)) > steps.rival_d2;
+  };
+  return levenberg_marquardt(problem, nodes, steps.most, steps.least_gain, build, accept,
+                             pointless);
 }
 
 template Score<2> measure(const Problem<2>&, const Nodes<2>&, const Score<2>*);
 template Score<3> measure(const Problem<3>&, const Nodes<3>&, const Score<3>*);
-template double rough_distance(const Problem<2>&, const Nodes<2>&);
-template double rough_distance(const Problem<3>&, const Nodes<3>&);
-template int minimise_distance(const Problem<2>&, Nodes<2>&, Score<2>&, int);
-template int minimise_distance(const Problem<3>&, Nodes<3>&, Score<3>&, int);
+template int minimise_distance(const Problem<2>&, Nodes<2>&, Score<2>&, const DistanceSteps<2>&);
+template int minimise_distance(const Problem<3>&, Nodes<3>&, Score<3>&, const DistanceSteps<3>&);
 
 }  // namespace bezel::curve_search

@@ -19,6 +19,7 @@ using curve_search::Nodes;
 using curve_search::Problem;
 using curve_search::projected_nodes;
 using curve_search::Projection;
+using curve_search::Quick;
 using curve_search::quick_climb;
 using curve_search::tangent_residual;
 
@@ -35,10 +36,12 @@ CurveNodes searched(const Problem<dim>& problem, int degree, CurveMethod method,
   CurveNodes out;
   Effort effort;
   Found<dim> best, root;
-  if (method == CurveMethod::equal_tangent && quick_climb(problem, degree, root, effort)) {
-    best = root;
+  const Quick<dim> quick = quick_climb(problem, degree, effort);
+  if (method == CurveMethod::equal_tangent ? quick.good : converges(problem, quick)) {
+    best = root = quick.found;
+    if (method != CurveMethod::equal_tangent) polish(problem, best, effort);
   } else {
-    climb(problem, degree, best, root, effort);
+    climb(problem, degree, quick, best, root, effort);
   }
   switch (method) {
     case CurveMethod::equal_tangent:
@@ -52,7 +55,8 @@ CurveNodes searched(const Problem<dim>& problem, int degree, CurveMethod method,
       }
       break;
     case CurveMethod::orthogonal_distance:
-      effort.distance += minimise_distance(problem, best.nodes, best.score, distance_iterations);
+      effort.distance +=
+          minimise_distance(problem, best.nodes, best.score, {.most = distance_iterations});
       best.kind = CurveKind::orthogonal_distance;
       break;
     case CurveMethod::l2:

@@ -87,7 +87,7 @@ int GraphError<dim>::minimise(Nodes<dim>& nodes, int iterations) const {
   const int n = rung_.n;
   const auto nodal_of = [n](const Nodes<dim>& at) {
     std::array<Vec<dim>, max_nodes> nodal;
-    for (int k = 0; k <= n; ++k) nodal[std::size_t(k)] = at.g[std::size_t(k)].x;
+    for (int k = 0; k <= n; ++k) nodal[std::size_t(k)] = Nodes<dim>::at(at.x, k);
     return nodal;
   };
   const auto value_of = [&](const Nodes<dim>& at) {
@@ -116,7 +116,7 @@ int GraphError<dim>::minimise(Nodes<dim>& nodes, int iterations) const {
         small::Vector row;
         const double sigma = slope[c] / slope[0];
         for (std::size_t k = 1; k < std::size_t(n); ++k)
-          row[k - 1] = -l[k] * unit[k - 1] * (nodes.g[k].d1[c] - sigma * nodes.g[k].d1[0]);
+          row[k - 1] = -l[k] * unit[k - 1] * (nodes.d1[std::size_t(c)][k] - sigma * nodes.d1[0][k]);
         squares.add(std::sqrt(weight_[a]), row.data(), p[c] - point_[a][c]);
       }
     }
@@ -128,7 +128,8 @@ int GraphError<dim>::minimise(Nodes<dim>& nodes, int iterations) const {
     value = std::move(trial);
     return gain;
   };
-  return levenberg_marquardt(problem_, nodes, iterations, 1e-4, build, accept);
+  return levenberg_marquardt(problem_, nodes, iterations, 1e-4, build, accept,
+                             [](const Nodes<dim>&, int) { return false; });
 }
 
 template class GraphError<2>;

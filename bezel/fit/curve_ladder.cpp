@@ -12,6 +12,14 @@ constexpr double nearly_floor = 3e-14;
 // A degree whose distance falls by this factor needs no closer look; the last degree, by the
 // second.
 constexpr double enough = 0.3, enough_at_last = 0.15;
+// A distance that falls by this factor with each degree, below this fraction of the length, is that
+// of a curve that is resolved: its good nodes follow from those of the degree before.
+constexpr double steady = 0.2, resolved = 1e-3;
+// From the nodes of the last degree: least distance falls slowly in flat valleys.
+constexpr int last_polish = 160;
+constexpr double last_gain = 1e-4;
+// Points this fraction of the length away from the curve are on it.
+constexpr double rounding = 1e-15;
 // Below this fraction of the length, degrees that bring no gain are left out.
 constexpr double nearly_exact = 1e-12;
 
@@ -139,6 +147,13 @@ Nodes<dim> curvature_nodes(const Problem<dim>& problem, int degree) {
 template <int dim>
 class Level {
  public:
+  // Steps towards least distance, as long as they may become the best.
+  void minimise(Nodes<dim>& nodes, Score<dim>& score, int iterations) {
+    const bool rival = best.nodes.n == degree_ && best.score.valid;
+    effort_.distance += minimise_distance(
+        problem_, nodes, score,
+        {.most = iterations, .rival = rival ? &best.nodes : nullptr, .rival_d2 = best.score.d2});
+  }
   Level(const Problem<dim>& problem, int degree, Effort& effort)
       : problem_(problem), degree_(degree), effort_(effort) {}
   Found<dim> best, root;
@@ -159,7 +174,7 @@ class Level {
   // Least distance from a start, then Newton from there.
   void descend(Nodes<dim> nodes) {
     Score<dim> score = measure(problem_, nodes);
-    effort_.distance += minimise_distance(problem_, nodes, score, 15);
+    minimise(nodes, score, 15);
     keep(nodes, score, false);
     if (score.valid) newton(nodes, false);
   }
@@ -168,10 +183,7 @@ class Level {
   void explore(Nodes<dim> nodes, int rounds) {
     Score<dim> score = measure(problem_, nodes);
     for (int round = 0; round < rounds; ++round) {
-      effort_.distance += minimise_distance(problem_, nodes, score,
-                                            round == 0   ? 8
-                                            : round == 1 ? 15
-                                                         : 40);
+      minimise(nodes, score, round == 0 ? 8 : round == 1 ? 15 : 40);
       keep(nodes, score, false);
       if (!score.valid) return;
       Nodes<dim> aside = nodes;
@@ -180,16 +192,16 @@ class Level {
       if (!aside.ordered()) continue;
       Score<dim> found = offer(aside, r.converged);
       if (!found.valid) continue;
-      effort_.distance += minimise_distance(problem_, aside, found, 8);
+      minimise(aside, found, 8);
       keep(aside, found, false);
     }
   }
   // A few steps of least distance from nodes found.
-  void polish(const Found<dim>& from, int iterations) {
+  void polish(const Found<dim>& from, const DistanceSteps<dim>& steps) {
     if (!from.score.valid || at_floor()) return;
     Nodes<dim> nodes = from.nodes;
     Score<dim> score = from.score;
-    effort_.distance += minimise_distance(problem_, nodes, score, iterations);
+    effort_.distance += minimise_distance(problem_, nodes, score, steps);
     keep(nodes, score, false);
   }
   bool done(const Found<dim>& last, double factor) const {
@@ -212,6 +224,7 @@ class Level {
   bool better(const Score<dim>& score, const Found<dim>& than) const {
     if (than.nodes.n != degree_) return true;  // nothing yet
     if (score.valid != than.score.valid) return score.valid;
+    if (!score.valid) return std::fabs(1.0 - score.length) < std::fabs(1.0 - than.score.length);
     return score.d2 < than.score.d2;
   }
   const Problem<dim>& problem_;
@@ -242,14 +255,10 @@ void search_plain(const Problem<dim>& problem, Level<dim>& level, const Nodes<di
   level.newton(arc, false);
   level.descend(arc);
   if (before.nodes.n > 0 && !level.done(last, factor)) {
-    const Nodes<dim> other = raised(problem, before.nodes, n);
-    level.newton(other, true);
-    level.descend(other);
+    level.newton(raised(problem, before.nodes, n), false);
   }
   if (!level.done(last, factor)) {
-    const Nodes<dim> curved = curvature_nodes(problem, n);
-    level.newton(curved, false);
-    level.descend(curved);
+    level.descend(curvature_nodes(problem, n));
   }
 }
 
@@ -262,34 +271,68 @@ void offer_simple(const Problem<dim>& problem, Level<dim>& level, int n) {
     if (projected_nodes(problem, n, method, nodes) == CurveStatus::ok) level.offer(nodes, false);
   }
 }
-
 }  // namespace
 
 template <int dim>
-bool quick_climb(const Problem<dim>& problem, int degree, Found<dim>& found, Effort& effort) {
+Quick<dim> quick_climb(const Problem<dim>& problem, int degree, Effort& effort) {
+  Quick<dim> quick;
+  // No degree is left out: there are many roots, and from the degree before the last Newton's
+  // method mostly finds a worse one.
   Nodes<dim> lower = problem.chord();
   double largest = HUGE_VAL;
   for (int n = 2; n <= degree; ++n) {
     Nodes<dim> next;
     next.n = n;
     largest = project(problem, lower, problem.tables.rung(n).from_last.data(), false, next);
-    if (largest <= 1e-15 * problem.length && lower.n > 1) {
+    const double part = largest / problem.length;
+    if (part <= rounding && lower.n > 1) {
       lower = lift(problem, lower, degree);
       break;
     }
-    const NewtonResult r = solve_tangents(problem, next, false);
+    // On the way an error that is small beside the next interpolant's distance does not matter.
+    constexpr double root = 1e-12, loosest = 1e-2;
+    const double converged = n < degree ? std::clamp(part * part, root, loosest) : root;
+    const NewtonResult r = solve_tangents(problem, next, false, converged);
     effort.newton += r.iterations;
-    if (!r.converged) return false;
+    if (!r.converged) return quick;
+    quick.before = quick.last;
+    quick.last = lower;
     lower = next;
   }
-  found = {lower, measure(problem, lower), CurveKind::equal_tangent};
-  return found.score.valid && found.score.d2 <= std::max(0.5 * largest * std::sqrt(problem.length),
-                                                         floor_of_length * problem.length);
+  const Score<dim> score = measure(problem, lower);
+  quick.found = {lower, score, CurveKind::equal_tangent};
+  quick.good = score.valid && score.d2 <= std::max(0.5 * largest * std::sqrt(problem.length),
+                                                   floor_of_length * problem.length);
+  return quick;
 }
 
 template <int dim>
-void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>& root,
-           Effort& effort) {
+bool converges(const Problem<dim>& problem, const Quick<dim>& quick) {
+  if (!quick.good) return false;
+  if (within(problem, quick.found.score, floor_of_length)) return true;
+  if (!within(problem, quick.found.score, resolved) || quick.before.n < 1) return false;
+  const Score<dim> last = measure(problem, quick.last), before = measure(problem, quick.before);
+  const auto rate = [](double d, int n, double d_lower, int n_lower) {
+    return std::pow(d / d_lower, 1.0 / (n - n_lower));
+  };
+  return rate(quick.found.score.d2, quick.found.nodes.n, last.d2, quick.last.n) < steady &&
+         rate(last.d2, quick.last.n, before.d2, quick.before.n) < steady;
+}
+
+template <int dim>
+void polish(const Problem<dim>& problem, Found<dim>& found, Effort& effort) {
+  Level<dim> level(problem, found.nodes.n, effort);
+  level.offer(found.nodes, true);
+  if (!level.at_floor())
+    level.polish(level.best, {.most = last_polish, .least_gain = last_gain});
+  else if (!within(problem, level.best.score, rounding))
+    level.offer(arc_length_nodes(problem, found.nodes.n), false);
+  found = level.best;
+}
+
+template <int dim>
+void climb(const Problem<dim>& problem, int degree, const Quick<dim>& quick, Found<dim>& best,
+           Found<dim>& root, Effort& effort) {
   // Two chains: the best nodes of each degree, and the best without crowded starts. The first alone
   // loses its way: on curves of low regularity better nodes of one degree lead to worse ones of
   // the next.
@@ -306,48 +349,57 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
       Level<dim> top(problem, degree, effort);
       const Nodes<dim> start = lift(problem, even ? plain.nodes : last.nodes, degree);
       top.offer(start, true);
+      if (quick.good) top.offer(quick.found.nodes, true);
       if (even) {
         top.newton(start, true);
-        top.polish(top.best, 8);
+        top.polish(top.best, {.most = 8});
       }
+      // Digits below that, in which a placement by formula may be ahead.
+      if (!within(problem, top.best.score, rounding))
+        top.offer(arc_length_nodes(problem, degree), false);
       best = top.best;
       root = top.root;
       return;
     }
     Level<dim> level(problem, n, effort);
+    if (final && quick.good) level.offer(quick.found.nodes, true);
     const double factor = final ? enough_at_last : enough;
     const Nodes<dim> start = raised(problem, plain.nodes, n);
     level.offer(start, false);
-    level.newton(start, true);
+    level.newton(start, false);
     if (!level.done(plain, factor)) search_plain(problem, level, start, before, plain, factor);
-    level.polish(level.plain, 8);
+    level.polish(level.plain, {.most = 8});
     level.plain_over = true;
     if (plain.score.d2 != last.score.d2) {
       const Nodes<dim> other = raised(problem, last.nodes, n);
       level.newton(other, false);
       if (!level.done(last, factor)) level.descend(other);
     }
-    for (const double density : {0.5, 0.25}) {
-      if (level.done(last, factor) || !level.best.score.valid) break;
+    if (!level.done(last, factor) && level.best.score.valid) {
       const Found<dim> from = level.best;
-      level.descend(crowded(problem, from.nodes, from.score.slow_xi, density));
-      level.descend(crowded(problem, from.nodes, from.score.far_xi, density));
+      level.descend(crowded(problem, from.nodes, from.score.slow_xi, 0.5));
+      level.descend(crowded(problem, from.nodes, from.score.far_xi, 0.5));
     }
+    // Least distance ended somewhere in a valley: a root may be near that its start did not see.
+    if (!level.done(last, factor) && level.best.score.valid) level.newton(level.best.nodes, true);
     // Where degrees bring no more gain and are left out, the last one before is searched instead.
     const bool jumped = last.nodes.n < n - 1;
     const bool nearly =
         level.best.score.valid && level.best.score.d2 < nearly_exact * problem.length;
     if ((final || nearly) && !jumped) {
-      for (const double density : {0.8, 0.9, 0.7, 0.6}) {
+      for (const double density : {0.8, 0.9}) {
         if (level.done(last, factor) || !level.best.score.valid) break;
         const Found<dim> from = level.best;
         level.explore(crowded(problem, from.nodes, from.score.slow_xi, density), nearly ? 4 : 2);
         level.explore(crowded(problem, from.nodes, from.score.far_xi, density), 2);
       }
     }
-    if (final && !level.at_floor()) offer_simple(problem, level, n);
+    if (final && !within(problem, level.best.score, rounding)) offer_simple(problem, level, n);
     const bool gained = level.done(last, enough);
-    if (final || !gained) level.polish(level.best, final ? 40 : 8);
+    if (final)
+      level.polish(level.best, {.most = last_polish, .least_gain = last_gain});
+    else if (!gained)
+      level.polish(level.best, {.most = 8});
     before = plain;
     plain = level.plain;
     last = level.best;
@@ -363,9 +415,13 @@ void climb(const Problem<dim>& problem, int degree, Found<dim>& best, Found<dim>
   }
 }
 
-template bool quick_climb(const Problem<2>&, int, Found<2>&, Effort&);
-template bool quick_climb(const Problem<3>&, int, Found<3>&, Effort&);
-template void climb(const Problem<2>&, int, Found<2>&, Found<2>&, Effort&);
-template void climb(const Problem<3>&, int, Found<3>&, Found<3>&, Effort&);
+template Quick<2> quick_climb(const Problem<2>&, int, Effort&);
+template Quick<3> quick_climb(const Problem<3>&, int, Effort&);
+template bool converges(const Problem<2>&, const Quick<2>&);
+template bool converges(const Problem<3>&, const Quick<3>&);
+template void polish(const Problem<2>&, Found<2>&, Effort&);
+template void polish(const Problem<3>&, Found<3>&, Effort&);
+template void climb(const Problem<2>&, int, const Quick<2>&, Found<2>&, Found<2>&, Effort&);
+template void climb(const Problem<3>&, int, const Quick<3>&, Found<3>&, Found<3>&, Effort&);
 
 }  // namespace bezel::curve_search

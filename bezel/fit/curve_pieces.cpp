@@ -46,7 +46,8 @@ class Splitter {
                             double& largest) {
     std::vector<double> ends{a};
     // Neither pieces nor tolerances without end.
-    const double least = 1e-6 * (b - a), rounding = 1e-15 * curve_.length();
+    const double least = 1e-6 * (b - a);
+    const double allowed = std::max(tolerance, 1e-15 * curve_.length());
     double width = b - a;
     largest = 0.0;
     while (ends.back() < b && ends.size() <= most) {
@@ -56,7 +57,7 @@ class Splitter {
       for (int trial = 0; trial < 24; ++trial) {
         const double end = b - start - width < 1e-3 * width ? b : start + width;
         const double d = distance(start, end);
-        if (d <= std::max(tolerance, rounding) || width <= least) {
+        if (d <= allowed || width <= least) {
           good = end - start;
           good_distance = d;
           if (end == b) break;
@@ -68,7 +69,7 @@ class Splitter {
         // than allowed; never by more than 2.
         double factor = 0.5;
         if (std::isfinite(d))
-          factor = d > 0.0 ? std::pow(0.9 * tolerance / d, 1.0 / (degree_ + 1)) : 2.0;
+          factor = d > 0.0 ? std::pow(0.9 * allowed / d, 1.0 / (degree_ + 1)) : 2.0;
         width = (end - start) * std::clamp(factor, 0.5, 2.0);
         if (bad < HUGE_VAL && good > 0.0) {
           const double middle = std::sqrt(good * bad);

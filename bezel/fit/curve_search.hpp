@@ -14,25 +14,51 @@ namespace bezel::curve_search {
 
 constexpr std::size_t max_nodes = std::size_t(max_curve_degree) + 1;
 
-/// Nodes on the curve: parameters and what the curve is there.
+/// to[0 .. padded(n)) = from.
+template <std::size_t capacity>
+void copy_padded(int n, const std::array<double, capacity>& from,
+                 std::array<double, capacity>& to) {
+  std::copy(from.data(), from.data() + small::padded(n), to.data());
+}
+
+/// Nodes on the curve: parameters and what the curve is there, coordinate by coordinate. Entries
+/// behind the last node are padding; copies are of what is used, since there are many.
 template <int dim>
 struct Nodes {
+  using Row = std::array<double, std::size_t(small::padded(max_curve_degree + 1)) + small::padding>;
+  using Rows = std::array<Row, std::size_t(dim)>;
   int n = 0;
-  std::array<double, max_nodes> t;
-  std::array<CurveJet<dim>, max_nodes> g;
-  /// x and d1 of g once more, coordinate by coordinate, for sums over the nodes.
-  std::array<std::array<double, max_nodes>, dim> x, d1;
+  Row t;
+  Rows x, d1, d2;
+
+  Nodes() = default;
+  Nodes(const Nodes& other) { *this = other; }
+  Nodes& operator=(const Nodes& other) {
+    n = other.n;
+    copy_padded(n + 1, other.t, t);
+    for (std::size_t c = 0; c < dim; ++c) {
+      copy_padded(n + 1, other.x[c], x[c]);
+      copy_padded(n + 1, other.d1[c], d1[c]);
+      copy_padded(n + 1, other.d2[c], d2[c]);
+    }
+    return *this;
+  }
 
   void place(const SmoothCurve<dim>& curve, int i, double parameter) {
     set(i, parameter, curve(parameter));
   }
   void set(int i, double parameter, const CurveJet<dim>& jet) {
     t[std::size_t(i)] = parameter;
-    g[std::size_t(i)] = jet;
     for (std::size_t c = 0; c < dim; ++c) {
       x[c][std::size_t(i)] = jet.x.c[c];
       d1[c][std::size_t(i)] = jet.d1.c[c];
+      d2[c][std::size_t(i)] = jet.d2.c[c];
     }
+  }
+  static Vec<dim> at(const Rows& values, int i) {
+    Vec<dim> v;
+    for (std::size_t c = 0; c < dim; ++c) v.c[c] = values[c][std::size_t(i)];
+    return v;
   }
   bool ordered() const {
     for (int i = 0; i < n; ++i)
@@ -131,16 +157,16 @@ double longest_step(const Nodes<dim>& nodes, const small::Vector& dt) {
   }
   return lambda;
 }
-/// nodes + lambda dt, evaluated. dt[i - 1] belongs to node i.
+/// to = from + lambda dt, evaluated; both may be the same. dt[i - 1] belongs to node i.
 template <int dim>
-Nodes<dim> moved(const Problem<dim>& problem, const Nodes<dim>& nodes, const small::Vector& dt,
-                 double lambda) {
-  Nodes<dim> next;
-  next.n = nodes.n;
-  problem.set_ends(next);
-  for (int i = 1; i < nodes.n; ++i)
-    next.place(problem.curve, i, nodes.t[std::size_t(i)] + lambda * dt[std::size_t(i) - 1]);
-  return next;
+void move(const Problem<dim>& problem, const Nodes<dim>& from, const small::Vector& dt,
+          double lambda, Nodes<dim>& to) {
+  if (&to != &from) {
+    to.n = from.n;
+    problem.set_ends(to);
+  }
+  for (int i = 1; i < from.n; ++i)
+    to.place(problem.curve, i, from.t[std::size_t(i)] + lambda * dt[std::size_t(i) - 1]);
 }
 
 /// Levenberg-Marquardt in the inner nodes; the unknown of node i is dt_i / unit_i, unit_i the
@@ -149,16 +175,19 @@ Nodes<dim> moved(const Problem<dim>& problem, const Nodes<dim>& nodes, const sma
 /// @param build  (squares, unit): adds the rows unit_k dr / dt_k, with right-hand side -r, at the
 ///               nodes accepted last
 /// @param accept (next) -> relative gain in cost, when that is positive `next` becomes the state
+/// @param pointless (nodes, done) -> stop here; asked after each step accepted
 /// @return  steps tried. Stops when two gains in a row are below `least_gain` at little damping
-template <int dim, class Build, class Accept>
+template <int dim, class Build, class Accept, class Pointless>
 int levenberg_marquardt(const Problem<dim>& problem, Nodes<dim>& nodes, int iterations,
-                        double least_gain, const Build& build, const Accept& accept) {
+                        double least_gain, const Build& build, const Accept& accept,
+                        const Pointless& pointless) {
   const int size = nodes.n - 1;
   constexpr double least_damping = 1e-30, little_damping = 1e-12, most_damping = 1e4;
   double mu = 1e-6;
   int done = 0, small_gains = 0;
   small::LeastSquares squares;
   small::Vector unit;
+  Nodes<dim> next;
   while (done < iterations && size > 0) {
     for (int r = 0; r < size; ++r) {
       const double* t = nodes.t.data() + r;
@@ -171,15 +200,15 @@ int levenberg_marquardt(const Problem<dim>& problem, Nodes<dim>& nodes, int iter
     while (mu < most_damping && !(gain > 0.0) && done < iterations) {
       ++done;
       small::Vector step;
-      if (squares.solve(mu, step)) {
+      if (squares.solve(mu * squares.largest(), step)) {
         for (int r = 0; r < size; ++r) step[std::size_t(r)] *= unit[std::size_t(r)];
-        const Nodes<dim> next = moved(problem, nodes, step, longest_step(nodes, step));
+        move(problem, nodes, step, longest_step(nodes, step), next);
         if (next.ordered()) gain = accept(next);
         if (gain > 0.0) nodes = next;
       }
       mu = gain > 0.0 ? std::max(0.02 * mu, least_damping) : 20.0 * mu;
     }
-    if (!(gain > 0.0)) break;
+    if (!(gain > 0.0) || pointless(nodes, done)) break;
     small_gains = gain >= least_gain || mu > little_damping ? 0 : small_gains + 1;
     if (small_gains == 2) break;
   }
@@ -209,26 +238,51 @@ template <int dim>
 struct Score {
   double d2 = HUGE_VAL;                ///< sqrt(int d^2 |p'|)
   double min_speed = 0.0;              ///< smallest |p'| / (L / 2)
-  bool valid = false;                  ///< nodes ordered, min_speed >= 1e-3
+  double length = 0.0;                 ///< of p, over L
+  bool valid = false;                  ///< nodes ordered, min_speed >= 1e-3, length >= 1 / 4
   double slow_xi = 0.0, far_xi = 0.0;  ///< where |p'| is smallest, and d largest
-  static constexpr std::size_t most = std::size_t(4) * max_curve_degree;
-  std::array<Foot<dim>, most> foot;
-  std::array<double, most> speed;  ///< |p'|
+  using Row = std::array<double, std::size_t(4) * max_curve_degree>;
+  int points = 0;                   ///< entries of the rows below
+  Row s, speed;                     ///< parameter of the foot of each point; |p'|
+  std::array<Row, dim> e, tangent;  ///< of Foot, coordinate by coordinate
+
+  Score() = default;
+  Score(const Score& other) { *this = other; }
+  Score& operator=(const Score& other) {
+    d2 = other.d2;
+    min_speed = other.min_speed;
+    length = other.length;
+    valid = other.valid;
+    slow_xi = other.slow_xi;
+    far_xi = other.far_xi;
+    points = other.points;
+    copy_padded(points, other.s, s);
+    copy_padded(points, other.speed, speed);
+    for (std::size_t c = 0; c < dim; ++c) {
+      copy_padded(points, other.e[c], e[c]);
+      copy_padded(points, other.tangent[c], tangent[c]);
+    }
+    return *this;
+  }
 };
 /// @param guess  feet to start from; null: between the nodes
 template <int dim>
 Score<dim> measure(const Problem<dim>& problem, const Nodes<dim>& nodes,
                    const Score<dim>* guess = nullptr);
 
-/// About the same d2 from one point in four: a check.
+/// When least distance ends.
 template <int dim>
-double rough_distance(const Problem<dim>& problem, const Nodes<dim>& nodes);
-
+struct DistanceSteps {
+  int most;                           ///< steps
+  double least_gain = 1e-3;           ///< relative, per step
+  const Nodes<dim>* rival = nullptr;  ///< others found before: steps end when they run into these,
+  double rival_d2 = 0.0;              ///< or fall too slowly to get below their distance
+};
 /// Levenberg-Marquardt on the mean square distance; `nodes` and `score` become the best.
 ///
 /// @return  iterations done
 template <int dim>
 int minimise_distance(const Problem<dim>& problem, Nodes<dim>& nodes, Score<dim>& score,
-                      int iterations);
+                      const DistanceSteps<dim>& steps);
 
 }  // namespace bezel::curve_search

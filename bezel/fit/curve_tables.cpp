@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "bezel/fit/small_kernels.hpp"
+
 namespace bezel {
 namespace {
 
@@ -24,12 +26,22 @@ CurveRung::CurveRung(int degree) : n(degree), basis(degree), m(4 * degree) {
     weight.push_back(std::numbers::pi / m * std::sin(angle));
   }
   add_rows(basis, xi, value);
-  const std::size_t width = std::size_t(n) + 1;
-  slope.assign(std::size_t(m) * width, 0.0);
-  for (int a = 0; a < m; ++a)
-    for (int i = 0; i <= n; ++i)
-      for (std::size_t k = 0; k < width; ++k)
-        slope[std::size_t(a) * width + k] += value_row(a)[i] * d_row(i)[k];
+  const std::size_t width = std::size_t(n) + 1, points = std::size_t(m);
+  d.assign(basis.derivative_matrix().begin(), basis.derivative_matrix().end());
+  value_columns.resize(width * points);
+  slope_columns.assign(width * points, 0.0);
+  for (std::size_t a = 0; a < points; ++a)
+    for (std::size_t k = 0; k < width; ++k) {
+      value_columns[k * points + a] = value[a * width + k];
+      for (std::size_t i = 0; i < width; ++i)
+        slope_columns[k * points + a] += value[a * width + i] * d[i * width + k];
+    }
+  const std::size_t stride = std::size_t(small::padded(n + 1));
+  d_columns.assign(width * stride, 0.0);
+  for (std::size_t i = 0; i < width; ++i)
+    for (std::size_t k = 0; k < width; ++k) d_columns[k * stride + i] = d[i * width + k];
+  value.resize(value.size() + small::padding);
+  d.resize(d.size() + small::padding);
 }
 
 CurveInterpolator::Tables::Tables(int max_degree) : l2_rules_(std::size_t(max_degree)) {

@@ -24,17 +24,18 @@ struct CurveRung {
   /// ends, so d^2 sqrt(1 - xi^2) is smooth enough there for the rule to converge fast.
   int m;
   std::vector<double> xi, weight;
-  std::vector<double> value;  ///< [a][k] = l_k(xi_a)
-  std::vector<double> slope;  ///< [a][k] = l_k'(xi_a)
+  /// [a][k] = l_k(xi_a); the loops of small_kernels.hpp may read a little beyond the last row.
+  std::vector<double> value;
+  std::vector<double> value_columns;  ///< [k][a] = l_k(xi_a)
+  std::vector<double> slope_columns;  ///< [k][a] = l_k'(xi_a)
   const double* value_row(int a) const {
     return value.data() + std::size_t(a) * std::size_t(n + 1);
   }
-  const double* slope_row(int a) const {
-    return slope.data() + std::size_t(a) * std::size_t(n + 1);
-  }
-  const double* d_row(int i) const {
-    return basis.derivative_matrix().data() + std::size_t(i) * std::size_t(n + 1);
-  }
+
+  /// The differentiation matrix, [i][k] = l_k'(xi_i), with room behind it as above; and by columns,
+  /// [k][i], each padded.
+  std::vector<double> d, d_columns;
+  const double* d_row(int i) const { return d.data() + std::size_t(i) * std::size_t(n + 1); }
 };
 
 struct CurveInterpolator::Tables {

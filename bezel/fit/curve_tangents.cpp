@@ -8,33 +8,69 @@ namespace {
 using small::Matrix;
 using small::Vector;
 
-// One inner node: its tangent, the tangent's derivative, and p' there.
+// p' at the nodes.
 template <int dim>
-struct Tangent {
-  Vec<dim> tau, dtau, slope;
-};
-template <int dim>
-Tangent<dim> tangent(const CurveRung& rung, const Nodes<dim>& nodes, int i) {
-  const CurveJet<dim>& g = nodes.g[std::size_t(i)];
-  Tangent<dim> r;
-  const double inverse = 1.0 / norm(g.d1);
-  r.tau = inverse * g.d1;
-  r.dtau = inverse * (g.d2 - dot(r.tau, g.d2) * r.tau);
-  r.slope = combine(rung.d_row(i), nodes);
-  return r;
+void slopes(const CurveRung& rung, const Nodes<dim>& nodes, typename Nodes<dim>::Rows& p1) {
+  for (std::size_t c = 0; c < dim; ++c)
+    small::combine(nodes.n + 1, small::padded(nodes.n + 1), rung.d_columns.data(),
+                   nodes.x[c].data(), p1[c].data());
 }
 
-double residual_of(const Problem<2>& problem, const CurveRung& rung, const Nodes<2>& nodes,
-                   Vector& f) {
-  const double scale = 2.0 / problem.length;
-  double largest = 0.0;
-  for (int i = 1; i < nodes.n; ++i) {
-    const Vec2& d1 = nodes.g[std::size_t(i)].d1;
-    const double value = scale / norm(d1) * cross(combine(rung.d_row(i), nodes), d1);
-    f[std::size_t(i) - 1] = value;
-    largest = std::max(largest, std::fabs(value));
+// The equations at one iterate, and what their derivative needs of it.
+struct Equations {
+  Vector f;              // F_i of node i + 1
+  double residual;       // largest |F_i|
+  Nodes<2>::Rows p1;     // p'
+  Vector inverse_speed;  // 1 / |g'| of node i + 1
+
+  Equations() = default;
+  Equations(const Problem<2>& problem, const CurveRung& rung, const Nodes<2>& nodes) {
+    slopes(rung, nodes, p1);
+    const double scale = 2.0 / problem.length;
+    residual = 0.0;
+    for (std::size_t i = 1; i < std::size_t(nodes.n); ++i) {
+      const double x1 = nodes.d1[0][i], y1 = nodes.d1[1][i];
+      inverse_speed[i - 1] = 1.0 / std::sqrt(x1 * x1 + y1 * y1);
+      f[i - 1] = scale * inverse_speed[i - 1] * (p1[0][i] * y1 - p1[1][i] * x1);
+      residual = std::max(residual, std::fabs(f[i - 1]));
+      if (!std::isfinite(f[i - 1])) residual = HUGE_VAL;
+    }
   }
-  return std::isfinite(largest) ? largest : HUGE_VAL;
+
+  // [dF/dt | -F].
+  void linearise(const Problem<2>& problem, const CurveRung& rung, const Nodes<2>& nodes,
+                 Matrix& jacobian) const {
+    const double scale = 2.0 / problem.length;
+    const int size = nodes.n - 1;
+    for (int at = 1; at < nodes.n; ++at) {
+      const std::size_t i = std::size_t(at);
+      const double inverse = inverse_speed[i - 1];
+      const double tx = inverse * nodes.d1[0][i], ty = inverse * nodes.d1[1][i];
+      const double along = tx * nodes.d2[0][i] + ty * nodes.d2[1][i];
+      double* row = jacobian[at - 1];
+      small::scaled_sum(size, rung.d_row(at) + 1, scale * ty, nodes.d1[0].data() + 1, -scale * tx,
+                        nodes.d1[1].data() + 1, row);
+      // tau' = (g'' - (tau . g'') tau) / |g'|.
+      row[at - 1] =
+          scale * inverse *
+          (p1[0][i] * (nodes.d2[1][i] - along * ty) - p1[1][i] * (nodes.d2[0][i] - along * tx));
+      row[size] = -f[i - 1];
+    }
+  }
+};
+
+// In space: one inner node's tangent, the tangent's derivative, and p' there.
+struct Tangent {
+  Vec3 tau, dtau, slope;
+};
+Tangent tangent(const Nodes<3>& nodes, const Nodes<3>::Rows& p1, int i) {
+  const Vec3 d1 = Nodes<3>::at(nodes.d1, i), d2 = Nodes<3>::at(nodes.d2, i);
+  Tangent r;
+  const double inverse = 1.0 / norm(d1);
+  r.tau = inverse * d1;
+  r.dtau = inverse * (d2 - dot(r.tau, d2) * r.tau);
+  r.slope = Nodes<3>::at(p1, i);
+  return r;
 }
 
 double sum_of_squares(int size, const Vector& f) {
@@ -43,36 +79,21 @@ double sum_of_squares(int size, const Vector& f) {
   return sum;
 }
 
-// dF/dt.
-void linearise(const Problem<2>& problem, const CurveRung& rung, const Nodes<2>& nodes,
-               Matrix& jacobian) {
-  const double scale = 2.0 / problem.length;
-  for (int i = 1; i < nodes.n; ++i) {
-    const Tangent<2> r = tangent(rung, nodes, i);
-    const Vec2 tau = scale * r.tau;
-    const double* d = rung.d_row(i);
-    double* row = jacobian[i - 1];
-    for (int k = 1; k < nodes.n; ++k)
-      row[k - 1] =
-          d[k] * (nodes.d1[0][std::size_t(k)] * tau[1] - nodes.d1[1][std::size_t(k)] * tau[0]);
-    row[i - 1] = scale * cross(r.slope, r.dtau);
-  }
-}
-
 }  // namespace
 
 template <>
 double tangent_residual(const Problem<2>& problem, const Nodes<2>& nodes) {
-  Vector f;
-  return residual_of(problem, problem.tables.rung(nodes.n), nodes, f);
+  return Equations(problem, problem.tables.rung(nodes.n), nodes).residual;
 }
 
 template <>
 double tangent_residual(const Problem<3>& problem, const Nodes<3>& nodes) {
   const CurveRung& rung = problem.tables.rung(nodes.n);
+  Nodes<3>::Rows p1;
+  slopes(rung, nodes, p1);
   double largest = 0.0;
   for (int i = 1; i < nodes.n; ++i) {
-    const Tangent<3> r = tangent(rung, nodes, i);
+    const Tangent r = tangent(nodes, p1, i);
     const Vec3 f = (2.0 / problem.length) * (r.slope - dot(r.slope, r.tau) * r.tau);
     largest = std::max(largest, norm(f));
   }
@@ -91,78 +112,75 @@ NewtonResult solve_tangents(const Problem<2>& problem, Nodes<2>& nodes, bool pat
   const CurveRung& rung = problem.tables.rung(nodes.n);
   const int size = nodes.n - 1;
   Matrix jacobian;
-  Vector f, step;
-  Nodes<2> now = nodes;
+  Vector step;
   NewtonResult result{HUGE_VAL, false, 0};
   double last = HUGE_VAL;
   int without_gain = 0;
-  // Plain Newton, steps limited by the gaps only.
+  // Plain Newton, steps limited by the gaps only. The best iterate and the last one, if that is
+  // another, in two places, so that nothing is copied.
+  Nodes<2> second;
+  Nodes<2>*best = nullptr, *now = &nodes;
   for (int i = 0;; ++i) {
-    const double residual = residual_of(problem, rung, now, f);
-    if (residual < result.residual) {
+    const Equations equations(problem, rung, *now);
+    const double residual = equations.residual;
+    if (residual < result.residual || !best) {
       result.residual = residual;
-      nodes = now;
+      best = now;
       without_gain = 0;
     } else if (++without_gain > 8) {
       break;
     }
     if (residual <= converged || (residual <= noise && residual > last / 3.0)) {
       result.converged = true;
-      return result;
+      break;
     }
     if (i == plain_steps) break;
     last = residual;
-    linearise(problem, rung, now, jacobian);
-    for (int k = 0; k < size; ++k) step[std::size_t(k)] = -f[std::size_t(k)];
+    equations.linearise(problem, rung, *now, jacobian);
     if (!small::solve(size, jacobian, step)) break;
     ++result.iterations;
-    now = moved(problem, now, step, longest_step(now, step));
-    if (!now.ordered()) break;
+    const double lambda = longest_step(*now, step);
+    Nodes<2>* next = best == &nodes ? &second : &nodes;
+    move(problem, *now, step, lambda, *next);
+    now = next;
+    if (!now->ordered()) break;
   }
+  if (best == &second) nodes = second;
+  if (result.converged) return result;
   result.converged = result.residual <= noise;
   if (result.converged || !patient) return result;
 
-  // From the best iterate, with a line search; when that stalls, damped normal equations.
-  now = nodes;
+  // From the best iterate, with a line search; when that stalls, damped least squares.
+  Nodes<2> at = nodes, trial;
+  Equations equations(problem, rung, at);
   bool damped = false;
   for (int i = 0; i < search_steps + damped_steps; ++i) {
-    if (residual_of(problem, rung, now, f) <= converged) break;
-    linearise(problem, rung, now, jacobian);
-    const double cost = sum_of_squares(size, f);
+    if (equations.residual <= converged) break;
+    equations.linearise(problem, rung, at, jacobian);
+    const double cost = sum_of_squares(size, equations.f);
     if (damped) {
-      Matrix normal;
-      for (int r = 0; r < size; ++r) {
-        for (int c = 0; c <= r; ++c) {
-          double sum = 0.0;
-          for (int k = 0; k < size; ++k) sum += jacobian[k][r] * jacobian[k][c];
-          normal[r][c] = sum;
-        }
-        normal[r][r] += cost;
-        double sum = 0.0;
-        for (int k = 0; k < size; ++k) sum -= jacobian[k][r] * f[std::size_t(k)];
-        step[std::size_t(r)] = sum;
-      }
-      if (!small::solve_spd(size, normal, step)) break;
-    } else {
-      for (int k = 0; k < size; ++k) step[std::size_t(k)] = -f[std::size_t(k)];
-      if (!small::solve(size, jacobian, step)) {
-        damped = true;
-        continue;
-      }
+      small::LeastSquares squares;
+      squares.start(size);
+      for (int r = 0; r < size; ++r) squares.add(1.0, jacobian[r], jacobian[r][size]);
+      squares.factor();
+      if (!squares.solve(cost, step)) break;
+    } else if (!small::solve(size, jacobian, step)) {
+      damped = true;
+      continue;
     }
     ++result.iterations;
-    double lambda = longest_step(now, step);
+    double lambda = longest_step(at, step);
     bool moving = false;
     for (int halving = 0; halving < 10 && !moving; ++halving, lambda *= 0.5) {
-      const Nodes<2> next = moved(problem, now, step, lambda);
-      Vector trial;
-      const double value = residual_of(problem, rung, next, trial);
-      if (next.ordered() && sum_of_squares(size, trial) < (1.0 - 1e-4 * lambda) * cost) {
+      move(problem, at, step, lambda, trial);
+      const Equations there(problem, rung, trial);
+      if (trial.ordered() && sum_of_squares(size, there.f) < (1.0 - 1e-4 * lambda) * cost) {
         moving = true;
-        now = next;
-        if (value < result.residual) {
-          result.residual = value;
-          nodes = next;
+        at = trial;
+        equations = there;
+        if (there.residual < result.residual) {
+          result.residual = there.residual;
+          nodes = at;
         }
       }
     }
@@ -181,9 +199,11 @@ NewtonResult solve_tangents(const Problem<3>& problem, Nodes<3>& nodes, bool pat
   const int size = nodes.n - 1;
   const double scale = 2.0 / problem.length;
   const auto cost_of = [&](const Nodes<3>& at) {
+    Nodes<3>::Rows p1;
+    slopes(rung, at, p1);
     double sum = 0.0;
     for (int i = 1; i < at.n; ++i) {
-      const Tangent<3> r = tangent(rung, at, i);
+      const Tangent r = tangent(at, p1, i);
       const Vec3 f = scale * (r.slope - dot(r.slope, r.tau) * r.tau);
       sum += dot(f, f);
     }
@@ -191,15 +211,17 @@ NewtonResult solve_tangents(const Problem<3>& problem, Nodes<3>& nodes, bool pat
   };
   double cost = cost_of(nodes);
   const auto build = [&](small::LeastSquares& squares, const Vector& unit) {
+    Nodes<3>::Rows p1;
+    slopes(rung, nodes, p1);
     for (int node = 1; node < nodes.n; ++node) {
-      const Tangent<3> r = tangent(rung, nodes, node);
+      const Tangent r = tangent(nodes, p1, node);
       const double along = dot(r.slope, r.tau);
       const Vec3 f = scale * (r.slope - along * r.tau);
       const Vec3 own = (-scale) * (along * r.dtau + dot(r.slope, r.dtau) * r.tau);
       for (int c = 0; c < 3; ++c) {
         Vector row;
         for (int k = 0; k < size; ++k) {
-          const Vec3& d1 = nodes.g[std::size_t(k) + 1].d1;
+          const Vec3 d1 = Nodes<3>::at(nodes.d1, k + 1);
           row[std::size_t(k)] =
               scale * rung.d_row(node)[k + 1] * (d1[c] - dot(d1, r.tau) * r.tau[c]);
         }
@@ -217,7 +239,8 @@ NewtonResult solve_tangents(const Problem<3>& problem, Nodes<3>& nodes, bool pat
     return gain;
   };
   NewtonResult result{HUGE_VAL, false, 0};
-  result.iterations = levenberg_marquardt(problem, nodes, patient ? 60 : 15, 1e-8, build, accept);
+  result.iterations = levenberg_marquardt(problem, nodes, patient ? 60 : 15, 1e-8, build, accept,
+                                          [](const Nodes<3>&, int) { return false; });
   result.residual = tangent_residual(problem, nodes);
   result.converged = std::isfinite(cost);
   return result;

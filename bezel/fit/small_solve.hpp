@@ -5,7 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <utility>
+
+#include "bezel/fit/small_kernels.hpp"
 
 namespace bezel::small {
 
@@ -32,62 +33,21 @@ inline double product(const double* a, const double* b, int n) {
   return (s0 + s1) + (s2 + s3);
 }
 
-/// Solves A x = b by Gaussian elimination with partial pivoting; A is overwritten, b becomes x.
-/// False when a pivot is zero or not finite.
-inline bool solve(int n, Matrix& a, Vector& b) {
-  for (int c = 0; c < n; ++c) {
-    int pivot = c;
-    for (int r = c + 1; r < n; ++r)
-      if (std::fabs(a[r][c]) > std::fabs(a[pivot][c])) pivot = r;
-    const double head = a[pivot][c];
-    if (!(std::fabs(head) > 0.0) || !std::isfinite(head)) return false;
-    if (pivot != c) {
-      std::swap_ranges(a[c] + c, a[c] + n, a[pivot] + c);
-      std::swap(b[std::size_t(c)], b[std::size_t(pivot)]);
-    }
-    const double* top = a[c];
-    const double inverse = 1.0 / head;
-    for (int r = c + 1; r < n; ++r) {
-      double* row = a[r];
-      const double factor = row[c] * inverse;
-      for (int k = c + 1; k < n; ++k) row[k] -= factor * top[k];
-      b[std::size_t(r)] -= factor * b[std::size_t(c)];
-    }
-  }
+/// x from a triangle with its right-hand side in column n.
+inline void substitute(int n, int stride, const double* a, Vector& x) {
   for (int r = n; r-- > 0;) {
-    double sum = b[std::size_t(r)];
-    for (int k = r + 1; k < n; ++k) sum -= a[r][k] * b[std::size_t(k)];
-    b[std::size_t(r)] = sum / a[r][r];
+    const double* row = a + std::ptrdiff_t(r) * stride;
+    double sum = row[n];
+    for (int k = n; --k > r;) sum -= row[k] * x[std::size_t(k)];
+    x[std::size_t(r)] = sum / row[r];
   }
-  return true;
 }
 
-/// Solves A x = b for a symmetric positive definite A, given by its lower triangle, which is
-/// overwritten; b becomes x. False when A is not positive definite to rounding.
-inline bool solve_spd(int n, Matrix& a, Vector& b) {
-  for (int r = 0; r < n; ++r) {
-    double* row = a[r];
-    for (int c = 0; c <= r; ++c) {
-      double sum = row[c];
-      for (int k = 0; k < c; ++k) sum -= row[k] * a[c][k];
-      if (c < r) {
-        row[c] = sum / a[c][c];
-      } else {
-        if (!(sum > 0.0) || !std::isfinite(sum)) return false;
-        row[r] = std::sqrt(sum);
-      }
-    }
-  }
-  for (int r = 0; r < n; ++r) {
-    double sum = b[std::size_t(r)];
-    for (int k = 0; k < r; ++k) sum -= a[r][k] * b[std::size_t(k)];
-    b[std::size_t(r)] = sum / a[r][r];
-  }
-  for (int r = n; r-- > 0;) {
-    double sum = b[std::size_t(r)];
-    for (int k = r + 1; k < n; ++k) sum -= a[k][r] * b[std::size_t(k)];
-    b[std::size_t(r)] = sum / a[r][r];
-  }
+/// Solves A x = b by Gaussian elimination with partial pivoting. A is overwritten; b is its column
+/// n. False when a pivot is zero or not finite.
+inline bool solve(int n, Matrix& a, Vector& x) {
+  if (!eliminate(n, capacity, a[0])) return false;
+  substitute(n, capacity, a[0], x);
   return true;
 }
 
@@ -100,81 +60,54 @@ class LeastSquares {
   void start(int columns) {
     rows_ = 0;
     columns_ = columns;
+    stride_ = padded(columns + 1);
+  }
+  /// The next row of A, to be filled, and then its entry of b; what lies behind is padding. Rows
+  /// wanted: at least as many as columns.
+  double* next_row() {
+    double* row = a_.data() + std::ptrdiff_t(rows_++) * stride_;
+    for (int k = stride_ - padding; k < stride_; ++k) row[k] = 0.0;
+    return row;
   }
   /// Adds a row of A and its entry of b, both times a weight.
-  void add(double weight, const double* row, double b) {
-    for (int c = 0; c < columns_; ++c) column(c)[rows_] = weight * row[c];
-    b_[std::size_t(rows_++)] = weight * b;
+  void add(double weight, const double* values, double b) {
+    double* row = next_row();
+    for (int c = 0; c < columns_; ++c) row[c] = weight * values[c];
+    row[columns_] = weight * b;
   }
-  /// Reduces A to a triangle; solve() may then be called with any damping. Rows added: at least as
-  /// many as columns.
+  /// Reduces A to a triangle; solve() may then be called with any damping.
   void factor() {
-    for (int c = 0; c < columns_; ++c) {
-      diagonal_[std::size_t(c)] = reduce(column(c), c, rows_);
-      for (int k = c + 1; k < columns_; ++k) reflect(column(c), c, rows_, column(k));
-      reflect(column(c), c, rows_, b_.data());
-    }
-    largest_ = 0.0;
-    for (int c = 0; c < columns_; ++c) {
-      double sum = diagonal_[std::size_t(c)] * diagonal_[std::size_t(c)];
-      for (int r = 0; r < c; ++r) sum += column(c)[r] * column(c)[r];
-      largest_ = std::max(largest_, sum);
-    }
+    triangularise(columns_, {rows_, rows_, 0}, stride_, a_.data(), work_.data());
+    Vector sum{};
+    for (int r = 0; r < columns_; ++r)
+      for (int c = r; c < columns_; ++c) sum[std::size_t(c)] += entry(r)[c] * entry(r)[c];
+    largest_ = *std::max_element(sum.begin(), sum.begin() + columns_);
   }
-  /// @param mu  damping over the largest |column of A|^2 @return false when not finite
-  bool solve(double mu, Vector& x) const {
-    // The triangle above a diagonal block: column c of both has entries in rows 0..c of each.
-    std::array<double, std::size_t(2) * capacity * capacity> work{};
-    std::array<double, std::size_t(2) * capacity> b{};
-    const int n = columns_;
-    const auto work_column = [&](int c) { return work.data() + std::size_t(c) * 2 * capacity; };
-    // Order of rows: damping row i directly after triangle row i, so that column c ends at 2 c + 1.
-    for (int c = 0; c < n; ++c) {
-      for (int r = 0; r < c; ++r) work_column(c)[2 * r] = column(c)[r];
-      work_column(c)[2 * c] = diagonal_[std::size_t(c)];
-      work_column(c)[2 * c + 1] = std::sqrt(mu * largest_);
-      b[std::size_t(2 * c)] = b_[std::size_t(c)];
+  /// The largest |column of A|^2.
+  double largest() const { return largest_; }
+  /// @return false when not finite
+  bool solve(double damping, Vector& x) const {
+    // Row i of the damping directly after row i of the triangle: column c ends at row 2 c + 1.
+    std::array<double, std::size_t(2) * capacity * capacity> a;
+    std::array<double, std::size_t(4) * capacity> work;
+    for (int r = 0; r < columns_; ++r) {
+      double* row = a.data() + std::ptrdiff_t(2 * r) * stride_;
+      std::fill(row, row + r, 0.0);
+      std::copy(entry(r) + r, entry(r) + stride_, row + r);
+      std::fill(row + stride_, row + 2 * stride_, 0.0);
+      row[stride_ + r] = std::sqrt(damping);
     }
-    std::array<double, capacity> diagonal;
-    for (int c = 0; c < n; ++c) {
-      const int end = 2 * c + 2;
-      diagonal[std::size_t(c)] = reduce(work_column(c), c, end);
-      for (int k = c + 1; k < n; ++k) reflect(work_column(c), c, end, work_column(k));
-      reflect(work_column(c), c, end, b.data());
-    }
-    for (int r = n; r-- > 0;) {
-      double sum = b[std::size_t(r)];
-      for (int k = r + 1; k < n; ++k) sum -= work_column(k)[r] * x[std::size_t(k)];
-      x[std::size_t(r)] = sum / diagonal[std::size_t(r)];
-      if (!std::isfinite(x[std::size_t(r)])) return false;
-    }
-    return true;
+    triangularise(columns_, {2 * columns_, 2, 2}, stride_, a.data(), work.data());
+    substitute(columns_, stride_, a.data(), x);
+    return std::all_of(x.begin(), x.begin() + columns_, [](double v) { return std::isfinite(v); });
   }
 
  private:
-  double* column(int c) { return a_.data() + std::size_t(c) * most_rows; }
-  const double* column(int c) const { return a_.data() + std::size_t(c) * most_rows; }
-
-  // v[first..end) becomes the reflector (v . v = 2) that maps it to a multiple of e_first; returns
-  // that multiple.
-  static double reduce(double* v, int first, int end) {
-    const double length = std::sqrt(product(v + first, v + first, end - first));
-    if (!(length > 0.0)) return 0.0;
-    const double image = v[first] > 0.0 ? -length : length;
-    v[first] -= image;
-    const double scale = std::sqrt(2.0 / product(v + first, v + first, end - first));
-    for (int r = first; r < end; ++r) v[r] *= scale;
-    return image;
-  }
-  static void reflect(const double* v, int first, int end, double* x) {
-    const double factor = product(v + first, x + first, end - first);
-    for (int r = first; r < end; ++r) x[r] -= factor * v[r];
-  }
-  int rows_ = 0, columns_ = 0;
+  const double* entry(int r) const { return a_.data() + std::ptrdiff_t(r) * stride_; }
+  int rows_ = 0, columns_ = 0, stride_ = 0;
   double largest_ = 0.0;
   std::array<double, std::size_t(most_rows) * capacity> a_;
-  std::array<double, std::size_t(most_rows)> b_;
-  std::array<double, capacity> diagonal_;
+  std::array<double, std::size_t(2) * most_rows> work_;
 };
 
 }  // namespace bezel::small

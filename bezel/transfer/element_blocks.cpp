@@ -45,7 +45,7 @@ void ElementTransfer::finish_blocks(const Group& g, std::int32_t t, Accumulators
   }
   blocks.value.assign(functions * pairs * columns, 0.0);
   const std::vector<double> none(blocks.mass.size(), 0.0);
-  finish(g, t, sums, blocks.mass, none, area, blocks.value, outcome);
+  finish(g, t, sums, {}, blocks.mass, none, area, blocks.value, outcome);
 }
 
 }  // namespace bezel::detail

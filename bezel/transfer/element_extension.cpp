@@ -51,7 +51,7 @@ void ElementTransfer::extension_points(const Group& g, std::int32_t t, std::span
     bool have_warm = false;
     visit(w, place, d, donor_place(g, d, x, warm, have_warm));
   };
-  const int pd = g.donor_space->highest_degree();
+  const int pd = g.donor_degree.highest;
   if (g.target_mapped) {
     const int degree = pt + 2 * (target_.degree - 1) + pd + inexact_extra;
     reference_nodes(target_, t, run, false, degree);

@@ -13,6 +13,9 @@
 namespace bezel::detail {
 namespace {
 
+/// Donors smaller than this fraction of the target's area get their areas from rays of their own.
+constexpr double small_area = 1.0 / 64.0;
+
 Vec2 mix(const Vec2& a, const Vec2& b, double s) {
   return (1.0 - s) * a + s * b;
 }
@@ -95,7 +98,8 @@ ElementTransfer::RunShape ElementTransfer::run_shape(std::span<const Segment> ru
   centre *= 1.0 / static_cast<double>(run.size());
   shape.relative = centre;
   shape.centre = origin_ + centre;
-  shape.gap = norm(sum);
+  bridges_.clear();
+  shape.gap = loose_ ? bridge_joints() : norm(sum);
   double twice = 0.0;
   Vec2* p = piece_control_.data();
   for (const int degree : piece_degree_) {
@@ -160,18 +164,16 @@ void ElementTransfer::add_pair_moments(const Group& g, std::int32_t t, std::int3
 bool ElementTransfer::can_batch(const Group& g) {
   const int degree = g.target_space->uniform_degree();
   return !g.donor_mapped && !g.target_mapped && degree >= 0 && degree <= max_moment_degree &&
-         degree == g.donor_space->uniform_degree();
+         degree == g.donor_degree.uniform;
 }
 
 TargetPlace ElementTransfer::target_place(const Group& g, std::int32_t t) {
   return place_of(g.target_frame[static_cast<std::size_t>(t)]);
 }
 
-void ElementTransfer::fill_batch(std::span<const BoundaryPiece> pieces) {
-  const int degree = target_.degree;
-  const std::size_t points = static_cast<std::size_t>(degree) + 1, count = pieces.size();
-  batch_.resize(count, degree);
-  const std::size_t stride = batch_.stride;
+template <std::size_t points>
+void ElementTransfer::fill_curves(std::span<const BoundaryPiece> pieces) {
+  const std::size_t stride = batch_.stride, count = pieces.size();
   const Vec2* const curves[2] = {target_.edge_control.data(), donor_.edge_control.data()};
   double *from = batch_.from.data(), *to = batch_.to.data();
   double *x = batch_.x.data(), *y = batch_.y.data();
@@ -187,6 +189,13 @@ void ElementTransfer::fill_batch(std::span<const BoundaryPiece> pieces) {
       y[k * stride + i] = p[k].y();
     }
   }
+}
+
+void ElementTransfer::fill_batch(std::span<const BoundaryPiece> pieces) {
+  batch_.resize(pieces.size(), target_.degree);
+  if (target_.degree == 1) return fill_curves<2>(pieces);
+  if (target_.degree == 2) return fill_curves<3>(pieces);
+  return fill_curves<4>(pieces);
 }
 
 std::span<const Segment> ElementTransfer::all_runs(const ElementPieces& own) {
@@ -206,6 +215,7 @@ std::span<const Segment> ElementTransfer::all_runs(const ElementPieces& own) {
 bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, std::size_t first,
                                     ElementOutcome& outcome) {
   area_.clear();
+  bridged_.assign(own.donors.size(), 0);
   const bool batch = donor_.degree == target_.degree && target_.degree <= max_batch_degree;
   if (!batch) {
     for (std::size_t k = 0; k < own.donors.size(); ++k) {
@@ -217,36 +227,36 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
   }
   fill_batch(own.pieces);
   // The areas have the same bits whatever is summed besides.
-  const bool fits = corners_fit(target_, t);
-  const bool summed = fits && first < groups_.size();
+  const bool summed = first < groups_.size();
   const int degree = summed ? 2 * groups_[first].target_space->uniform_degree() : 0;
   const TargetPlace place =
       summed ? target_place(groups_[first], t)
-      : fits ? place_of(affine_frame(target_.corners(t)))
-             : TargetPlace{origin_, Vec2{{1, 0}}, Vec2{{0, 1}}, Vec2{{1, 0}}, Vec2{{0, 1}}, 1.0};
-  region_sums(piece_table(target_.degree, degree), degree, place, own.pieces, own.donors.size(),
-              batch_);
-  const auto open = static_cast<std::size_t>(bernstein::triangle_size(degree));
+      : target_.degree == 1
+          ? place_of(affine_frame(target_.corners(t)))
+          : TargetPlace{origin_, Vec2{{1, 0}}, Vec2{{0, 1}}, Vec2{{1, 0}}, Vec2{{0, 1}}, 1.0};
+  region_sums(piece_table(target_.degree, degree), degree, origin_, place, own.pieces,
+              own.donors.size(), batch_);
   for (std::size_t k = 0; k < own.donors.size(); ++k) {
+    const std::int32_t d = own.donors[k];
+    // About a place in the target element, areas are known to its rounding.
+    const bool small =
+        d != exterior && donor_.element_area[static_cast<std::size_t>(d)] <
+                             small_area * target_.element_area[static_cast<std::size_t>(t)];
+    if (small || loose_) {
+      const RunShape shape = run_shape(run_of(own, k));
+      area_.push_back(shape.area);
+      bridged_[k] = bridges_.empty() ? 0 : 1;
+      note_region(t, d, shape.area, shape.gap, outcome);
+      continue;
+    }
+    bridges_.clear();
     const double* sums = batch_.region(k);
-    area_.push_back(sums[0] * place.area);
-    const double gap = norm(sums[open] * place.along_first + sums[open + 1] * place.along_second);
-    note_region(t, own.donors[k], area_.back(), gap, outcome);
+    area_.push_back(sums[batch_.area] * batch_.area_unit);
+    const double* open = sums + batch_.open;
+    const double gap = norm(open[0] * place.along_first + open[1] * place.along_second);
+    note_region(t, d, area_.back(), gap, outcome);
   }
   return summed;
-}
-
-void ElementTransfer::note_region(std::int32_t t, std::int32_t d, double area, double gap,
-                                  ElementOutcome& outcome) const {
-  double size = target_.element_diameter[static_cast<std::size_t>(t)];
-  double smaller = target_.element_area[static_cast<std::size_t>(t)];
-  if (d != exterior) {
-    size = std::min(size, donor_.element_diameter[static_cast<std::size_t>(d)]);
-    smaller = std::min(smaller, donor_.element_area[static_cast<std::size_t>(d)]);
-  }
-  outcome.max_joint_gap = std::max(outcome.max_joint_gap, gap / size);
-  if (gap > largest_joint_gap * size || area < -largest_joint_gap * smaller)
-    outcome.inconsistent = true;
 }
 
 void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPieces& own,
@@ -256,7 +266,7 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
   const int degree = g.target_space->uniform_degree();
   const TargetPlace place = target_place(g, t);
   if (!summed) {
-    region_sums(piece_table(target_.degree, 2 * degree), 2 * degree, place, own.pieces,
+    region_sums(piece_table(target_.degree, 2 * degree), 2 * degree, origin_, place, own.pieces,
                 own.donors.size(), batch_);
   }
   const auto size = static_cast<std::size_t>(bernstein::triangle_size(degree));
@@ -266,9 +276,10 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
     BatchRegion& region = regions_.emplace_back();
     region.donor = nullptr;
     if (d == exterior) continue;
+    if (some == nullptr) some = g.donor_powers(d);
+    if (bridged_[regions_.size() - 1] != 0) continue;
     region.frame = &g.donor_frame[static_cast<std::size_t>(d)];
     region.donor = g.donor_powers(d);
-    if (some == nullptr) some = region.donor;
   }
   // Constants come back whatever the rounding of the moments when they are not integrated at all.
   double* base = base_[i].data();
@@ -276,8 +287,14 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
   Accumulators& sums = moment_sums_[i];
   add_batch(degree, place, batch_, regions_, g.components, base, sums.product.data(),
             sums.basis.data(), mass.data());
+  if (target_.degree > 1) {
+    std::vector<double>& whole = whole_[i];
+    whole.assign(static_cast<std::size_t>(bernstein::triangle_size(2 * degree)), 0.0);
+    for (std::size_t k = 0; k < own.donors.size(); ++k)
+      for (std::size_t n = 0; n < whole.size(); ++n) whole[n] += batch_.region(k)[n];
+  }
   for (std::size_t k = 0; k < regions_.size(); ++k) {
-    if (!regions_[k].far) continue;
+    if (!regions_[k].far && (bridged_[k] == 0 || own.donors[k] == exterior)) continue;
     add_pair_moments(g, t, own.donors[k], run_shape(run_of(own, k)), base, sums,
                      mass.subspan(k * nc, nc));
   }
@@ -296,13 +313,9 @@ void ElementTransfer::moments_to_powers(std::size_t i, std::int32_t t) {
   powers_from_moments(degree, g.components, moments.product.data(), sums.product.data());
 }
 
-// The products of two basis functions of degree p are multiples of those of degree 2 p.
-bool ElementTransfer::moment_factor(const Group& g, std::int32_t t) {
-  const int p = g.target_space->degree(ElementId(t));
-  if (g.target_mapped || p > max_moment_degree) return false;
+void ElementTransfer::element_moments(const Group& g, std::int32_t t, int degree) {
   const Frame& frame = g.target_frame[static_cast<std::size_t>(t)];
-  const int degree = target_.degree;
-  const auto points = static_cast<std::size_t>(degree + 1);
+  const auto points = static_cast<std::size_t>(target_.degree + 1);
   local_control_.resize(3 * points);
   moment_pieces_.clear();
   std::size_t first = 0;
@@ -312,43 +325,51 @@ bool ElementTransfer::moment_factor(const Group& g, std::int32_t t) {
       const Vec2& x = control[side.reversed ? points - 1 - i : i];
       local_control_[first + i] = to_barycentric(frame, x - frame.centre);
     }
-    moment_pieces_.push_back({local_control_.data() + first, &piece_table(degree, 2 * p)});
+    moment_pieces_.push_back({local_control_.data() + first, &piece_table(target_.degree, degree)});
     first += points;
   }
-  const auto size = static_cast<std::size_t>(bernstein::triangle_size(2 * p));
-  moments_.resize(2 * size);
-  region_moments(2 * p, moment_pieces_, moments_.data());
-  const double scale = 1.0 / cross(frame.gradient[1], frame.gradient[2]);
-  double* powers = moments_.data() + size;
-  const std::vector<double>& matrix = power_matrix(2 * p);
-  for (std::size_t n = 0; n < size; ++n) {
-    double sum = 0.0;
-    for (std::size_t m = 0; m < size; ++m) sum += matrix[n * size + m] * moments_[m];
-    powers[n] = sum * scale;
+  moments_.resize(static_cast<std::size_t>(bernstein::triangle_size(degree)));
+  region_moments(degree, moment_pieces_, moments_.data());
+}
+
+// The products of two basis functions of degree p are multiples of those of degree 2 p.
+bool ElementTransfer::moment_factor(const Group& g, std::int32_t t, std::span<const double> whole) {
+  const int p = g.target_space->degree(ElementId(t));
+  if (g.target_mapped || p > max_moment_degree) return false;
+  if (whole.empty()) {
+    element_moments(g, t, 2 * p);
+    whole = moments_;
   }
+  const Frame& frame = g.target_frame[static_cast<std::size_t>(t)];
+  const double scale = 1.0 / cross(frame.gradient[1], frame.gradient[2]);
   const auto functions = static_cast<std::size_t>(bernstein::triangle_size(p));
-  const std::vector<double>& own_matrix = power_matrix(p);
+  powers_.assign(whole.size() + functions, 0.0);
+  double* powers = powers_.data() + functions;
+  powers_from_moments(2 * p, 1, whole.data(), powers);
+  double low[bernstein::triangle_size(max_moment_degree)];
+  for (int n = 0, b = 0; b <= p; ++b)
+    for (int a = 0; a <= p - b; ++a, ++n)
+      low[n] = whole[static_cast<std::size_t>(bernstein::triangle_index(2 * p, a, b))];
+  powers_from_moments(p, 1, low, powers_.data());
   const auto factors = multinomials(p);
   factor_.scale = 1.0;
   factor_.lower.resize(functions * functions);
   factor_.integrals.resize(functions);
+  double scaled[bernstein::triangle_size(max_moment_degree)];
+  for (std::size_t n = 0; n < functions; ++n) {
+    scaled[n] = factors[n] * scale;
+    factor_.integrals[n] = powers_[n] * scaled[n];
+  }
+  double* to = factor_.lower.data();
   for (int n = 0, k = 0; k <= p; ++k) {
     for (int j = 0; j <= p - k; ++j, ++n) {
       const auto row = static_cast<std::size_t>(n);
-      double integral = 0.0;
-      std::size_t at = 0;
-      for (int b = 0; b <= p; ++b)
-        for (int a = 0; a <= p - b; ++a, ++at)
-          integral += own_matrix[row * functions + at] *
-                      moments_[static_cast<std::size_t>(bernstein::triangle_index(2 * p, a, b))];
-      factor_.integrals[row] = integral * scale * factors[row];
-      for (int m = 0, l = 0; l <= p; ++l) {
-        for (int i = 0; i <= p - l && m <= n; ++i, ++m) {
-          const auto column = static_cast<std::size_t>(m);
-          factor_.lower[row * functions + column] =
-              factors[row] * factors[column] *
-              powers[static_cast<std::size_t>(bernstein::triangle_index(2 * p, j + i, k + l))];
-        }
+      std::size_t column = 0;
+      for (int l = 0; l <= k; ++l) {
+        const double* from = powers + bernstein::triangle_index(2 * p, j, k + l);
+        const int last = l < k ? p - l : j;
+        for (int i = 0; i <= last; ++i, ++column)
+          to[row * functions + column] = scaled[row] * factors[column] * from[i];
       }
     }
   }

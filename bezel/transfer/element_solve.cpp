@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bezel/base/error.hpp"
+#include "bezel/bernstein/triangle_kernel.hpp"
 #include "bezel/transfer/accumulate.hpp"
 #include "bezel/transfer/element_kernel.hpp"
 
@@ -17,37 +18,51 @@ constexpr int max_mapped_mass = 12;
 /// An element is covered when its overlaps add up to its area within this fraction.
 constexpr double full_cover = 1e-9;
 
+constexpr std::size_t max_functions =
+    static_cast<std::size_t>(bernstein::triangle_size(Space::max_degree));
+
+/// Values of several components: the compiler makes vectors of the loops. Each component has the
+/// bits that it has alone.
+template <std::size_t width>
+struct Pack {
+  double v[width];
+
+  friend Pack operator+(Pack a, const Pack& b) {
+    for (std::size_t c = 0; c < width; ++c) a.v[c] += b.v[c];
+    return a;
+  }
+  friend Pack operator*(double s, Pack a) {
+    for (std::size_t c = 0; c < width; ++c) a.v[c] = s * a.v[c];
+    return a;
+  }
+};
+
 /// x := scale (L L^T)^-1 x. N: the size when known at compile time.
-template <std::size_t N>
+template <std::size_t N, std::size_t width>
 void solve_in_place(std::size_t size, const double* lower, const double* inverse, double scale,
-                    double* x) {
+                    Pack<width>* x) {
   const std::size_t n = N > 0 ? N : size;
+  const auto eliminate = [&](double factor, const Pack<width>& known, Pack<width>& from) {
+    for (std::size_t c = 0; c < width; ++c) from.v[c] -= factor * known.v[c];
+  };
   for (std::size_t i = 0; i < n; ++i) {
-    double sum = x[i];
-    for (std::size_t k = 0; k < i; ++k) sum -= lower[i * n + k] * x[k];
-    x[i] = sum * inverse[i];
+    for (std::size_t k = 0; k < i; ++k) eliminate(lower[i * n + k], x[k], x[i]);
+    x[i] = inverse[i] * x[i];
   }
   for (std::size_t i = n; i-- > 0;) {
-    double sum = x[i];
-    for (std::size_t k = i + 1; k < n; ++k) sum -= lower[k * n + i] * x[k];
-    x[i] = sum * inverse[i];
+    for (std::size_t k = i + 1; k < n; ++k) eliminate(lower[k * n + i], x[k], x[i]);
+    x[i] = inverse[i] * x[i];
   }
-  for (std::size_t i = 0; i < n; ++i) x[i] *= scale;
+  for (std::size_t i = 0; i < n; ++i) x[i] = scale * x[i];
 }
 
-/// The target's polynomials may stay on the triangle they were computed on when the space's frame
-/// is that triangle, up to the rounding of barycentric coordinates at its place in the plane.
-bool is_frame(const Frame& frame, const std::array<Vec2, 3>& corners) {
-  double slope = 0.0;
-  for (const Vec2& g : frame.gradient) slope = std::max({slope, std::abs(g[0]), std::abs(g[1])});
-  const double reach = std::max(std::abs(frame.centre[0]), std::abs(frame.centre[1]));
-  double largest = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Lambda l = frame.lambda(corners[k]);
-    for (std::size_t i = 0; i < 3; ++i)
-      largest = std::max(largest, std::abs(l[i] - (i == k ? 1.0 : 0.0)));
-  }
-  return largest <= 0x1p-51 * (2.0 + reach * slope);
+template <std::size_t width>
+void solve_in_place(std::size_t n, const double* lower, const double* inverse, double scale,
+                    Pack<width>* x) {
+  if (n == 3) return solve_in_place<3>(n, lower, inverse, scale, x);
+  if (n == 6) return solve_in_place<6>(n, lower, inverse, scale, x);
+  if (n == 10) return solve_in_place<10>(n, lower, inverse, scale, x);
+  solve_in_place<0>(n, lower, inverse, scale, x);
 }
 
 }  // namespace
@@ -74,7 +89,8 @@ bool ElementTransfer::factorize(std::size_t n, Factor& factor) {
   return true;
 }
 
-const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int32_t t) {
+const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int32_t t,
+                                                       std::span<const double> whole) {
   const int p = g.target_space->degree(ElementId(t));
   const int gd = target_.degree;
   const auto n = static_cast<std::size_t>(bernstein::triangle_size(p));
@@ -91,7 +107,7 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
     reference_factor_.integrals.assign(n, area / static_cast<double>(n));
     return reference_factor_;
   }
-  if (moment_factor(g, t)) return f;
+  if (moment_factor(g, t, whole)) return f;
   f.scale = 1.0;
   if (g.target_mapped && gd + p <= max_mapped_mass) {
     const MappedMass& mass = mapped_mass(p);
@@ -128,17 +144,11 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
       f.lower[i * n + j] = factors[i] * factors[j] * *products;
   }
   if (!factorize(n, f)) {
-    throw NumericsError("target triangle " + std::to_string(t) +
+    throw NumericsError("target triangle " + std::to_string(target_.number_of(t)) +
                         ": its mass matrix is singular in double precision (degree " +
                         std::to_string(p) + " on a degenerate element)");
   }
   return f;
-}
-
-bool ElementTransfer::in_other_frame(const Group& g, std::int32_t t) const {
-  return g.target_space->basis() == Basis::physical &&
-         !(target_.degree == 1 &&
-           is_frame(g.target_space->frame(ElementId(t)), target_.corners(t)));
 }
 
 bool ElementTransfer::finish_straight(std::size_t i, std::int32_t t, std::span<const double> mass,
@@ -149,9 +159,7 @@ bool ElementTransfer::finish_straight(std::size_t i, std::int32_t t, std::span<c
   if (target_.degree != 1 || have_moments_[i] == 0 ||
       std::abs(area - own_area) > full_cover * own_area)
     return false;
-  for (const double m : sums_[i].basis)
-    if (m != 0.0) return false;  // extensions
-  if (in_other_frame(g, t)) return false;
+  if (extended_[i] != 0 || g.in_other_frame(t)) return false;
   const Accumulators& sums = moment_sums_[i];
   const double defect =
       solve_straight({g.target_space->degree(ElementId(t)), g.components, own_area, area,
@@ -161,66 +169,100 @@ bool ElementTransfer::finish_straight(std::size_t i, std::int32_t t, std::span<c
   return true;
 }
 
+/// What the solution on one element needs besides its right-hand sides.
+struct ElementTransfer::Solution {
+  const Factor& factor;
+  std::span<const double> multinomials;
+  const std::array<Lambda, 3>* to_frame;  // the space's frame seen from the triangle computed on
+  int degree;
+  double received_area, own_area;
+  bool full;  // the element is covered
+};
+
+template <std::size_t width>
+void ElementTransfer::finish_components(const Solution& s, const Accumulators& sums,
+                                        std::span<const double> mass, std::span<const double> base,
+                                        std::size_t c0, std::span<double> result,
+                                        ElementOutcome& outcome) {
+  const std::size_t n = s.multinomials.size(), nc = mass.size();
+  const std::size_t count = std::min(width, nc - c0);
+  std::array<Pack<width>, max_functions> rhs;
+  // Around the element's mean: what remains is small, so a constant comes back constant whatever
+  // the rule.
+  Pack<width> goal{}, mean{}, lacking{}, excess{};
+  for (std::size_t c = 0; c < count; ++c) {
+    goal.v[c] = mass[c0 + c];
+    mean.v[c] = s.full ? goal.v[c] / s.received_area : 0.0;
+    lacking.v[c] = mean.v[c] - base[c0 + c];
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    rhs[i] = {};
+    const double* product = sums.product.data() + i * nc + c0;
+    for (std::size_t c = 0; c < count; ++c) {
+      rhs[i].v[c] = (product[c] - lacking.v[c] * sums.basis[i]) * s.multinomials[i];
+      excess.v[c] += rhs[i].v[c];
+    }
+  }
+  for (std::size_t c = 0; c < count; ++c)
+    excess.v[c] = (goal.v[c] - mean.v[c] * s.own_area) - excess.v[c];
+  const Factor& f = s.factor;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t c = 0; c < width; ++c)
+      rhs[i].v[c] += excess.v[c] * f.integrals[i] / s.own_area;
+  solve_in_place(n, f.lower.data(), f.inverse.data(), f.scale, rhs.data());
+  // The constant part of what rounding left over.
+  for (int sweep = 0; sweep < 2; ++sweep) {
+    Pack<width> missing{};
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t c = 0; c < width; ++c)
+        missing.v[c] += (rhs[i].v[c] + mean.v[c]) * f.integrals[i];
+    for (std::size_t c = 0; c < width; ++c) missing.v[c] = goal.v[c] - missing.v[c];
+    if (sweep == 1) {
+      for (std::size_t c = 0; c < count; ++c)
+        outcome.max_mass_defect = std::max(outcome.max_mass_defect, std::abs(missing.v[c]));
+      break;
+    }
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t c = 0; c < width; ++c) rhs[i].v[c] += missing.v[c] / s.own_area;
+  }
+  for (std::size_t i = 0; i < n; ++i) rhs[i] = rhs[i] + mean;
+  if (s.to_frame != nullptr) {
+    std::array<Pack<width>, max_functions> from;
+    std::copy_n(rhs.begin(), n, from.begin());
+    bernstein::kernel::specialize_triangle(s.degree, from.data(), *s.to_frame, {0, 1, 2},
+                                           rhs.data());
+  }
+  for (std::size_t i = 0; i < n; ++i) std::copy_n(rhs[i].v, count, result.data() + i * nc + c0);
+}
+
 void ElementTransfer::finish(const Group& g, std::int32_t t, const Accumulators& sums,
-                             std::span<const double> mass, std::span<const double> base,
-                             double area, std::span<double> result, ElementOutcome& outcome) {
+                             std::span<const double> whole, std::span<const double> mass,
+                             std::span<const double> base, double area, std::span<double> result,
+                             ElementOutcome& outcome) {
   const int p = g.target_space->degree(ElementId(t));
-  const auto n = static_cast<std::size_t>(bernstein::triangle_size(p));
-  const std::size_t nc = mass.size();
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
-  const bool full = std::abs(area - own_area) <= full_cover * own_area;
-  const Factor& f = factor(g, t);
-  const auto factors = multinomials(p);
-  std::vector<double>& rhs = scratch_;
-  std::array<Lambda, 3> to_frame{};  // the space's frame seen from the triangle computed on
-  const bool other_frame = in_other_frame(g, t);
+  std::array<Lambda, 3> to_frame{};
+  const bool other_frame = g.in_other_frame(t);
   if (other_frame) {
     const auto corners = g.target_space->frame(ElementId(t)).corners();
     for (std::size_t k = 0; k < 3; ++k)
       to_frame[k] = g.target_frame[static_cast<std::size_t>(t)].lambda(corners[k]);
   }
-  for (std::size_t c = 0; c < nc; ++c) {
-    rhs.assign(n, 0.0);
-    // Around the element's mean: what remains is small, so a constant comes back constant whatever
-    // the rule.
-    const double mean = full ? mass[c] / area : 0.0;
-    double sum = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
-      rhs[i] = (sums.product[i * nc + c] - (mean - base[c]) * sums.basis[i]) * factors[i];
-      sum += rhs[i];
+  const Solution solution{factor(g, t, whole),
+                          multinomials(p),
+                          other_frame ? &to_frame : nullptr,
+                          p,
+                          area,
+                          own_area,
+                          std::abs(area - own_area) <= full_cover * own_area};
+  constexpr std::size_t together = 8;
+  for (std::size_t c = 0; c < mass.size();) {
+    if (mass.size() - c > 2) {
+      finish_components<together>(solution, sums, mass, base, c, result, outcome);
+      c += together;
+    } else {
+      finish_components<1>(solution, sums, mass, base, c++, result, outcome);
     }
-    const double excess = (mass[c] - mean * own_area) - sum;
-    for (std::size_t i = 0; i < n; ++i) rhs[i] += excess * f.integrals[i] / own_area;
-    switch (n) {
-      case 3:
-        solve_in_place<3>(n, f.lower.data(), f.inverse.data(), f.scale, rhs.data());
-        break;
-      case 6:
-        solve_in_place<6>(n, f.lower.data(), f.inverse.data(), f.scale, rhs.data());
-        break;
-      case 10:
-        solve_in_place<10>(n, f.lower.data(), f.inverse.data(), f.scale, rhs.data());
-        break;
-      default:
-        solve_in_place<0>(n, f.lower.data(), f.inverse.data(), f.scale, rhs.data());
-    }
-    // The constant part of what rounding left over.
-    for (int sweep = 0; sweep < 2; ++sweep) {
-      double got = 0.0;
-      for (std::size_t i = 0; i < n; ++i) got += (rhs[i] + mean) * f.integrals[i];
-      const double missing = mass[c] - got;
-      if (sweep == 1) {
-        outcome.max_mass_defect = std::max(outcome.max_mass_defect, std::abs(missing));
-        break;
-      }
-      for (std::size_t i = 0; i < n; ++i) rhs[i] += missing / own_area;
-    }
-    for (std::size_t i = 0; i < n; ++i) rhs[i] += mean;
-    if (other_frame) {
-      const auto own = bernstein::specialize<double>(p, rhs, to_frame);
-      std::copy(own.begin(), own.end(), rhs.begin());
-    }
-    for (std::size_t i = 0; i < n; ++i) result[i * nc + c] = rhs[i];
   }
 }
 

@@ -33,14 +33,16 @@ ElementTransfer::ElementTransfer(const OverlayMesh& donor, const OverlayMesh& ta
       policy_(policy),
       sums_(groups.size()),
       moment_sums_(groups.size()),
+      whole_(groups.size()),
       base_(groups.size()),
       have_moments_(groups.size()),
+      extended_(groups.size()),
       batched_(groups.size()),
       fit_(donor, target, groups.size()),
       fitted_(groups.size()) {
   for (std::size_t i = 0; i < groups.size(); ++i) {
     batched_[i] = can_batch(groups[i]) ? 1 : 0;
-    fitted_[i] = batched_[i] == 0 && PairFit::can(groups[i], donor, target) ? 1 : 0;
+    fitted_[i] = batched_[i] == 0 ? 1 : 0;
   }
 }
 
@@ -93,6 +95,12 @@ void ElementTransfer::boundary_nodes(std::span<const Segment> run, int degree) {
       nodes_.push_back(node);
     }
   }
+  for (const Bridge& bridge : bridges_) {
+    Node node;
+    node.x = origin_ + bridge.from + 0.5 * bridge.step;
+    node.dx = bridge.step;
+    nodes_.push_back(node);
+  }
 }
 
 // The same nodes in the reference coordinates of one element of `mesh`: its own sides are straight
@@ -144,6 +152,17 @@ void ElementTransfer::reference_nodes(const OverlayMesh& mesh, std::int32_t elem
       node.dq = {cross(node.dx, map.dv) * scale, cross(map.du, node.dx) * scale};
       nodes_.push_back(node);
     }
+  }
+  for (const Bridge& bridge : bridges_) {
+    Node node;
+    node.x = origin_ + bridge.from + 0.5 * bridge.step;
+    node.dx = bridge.step;
+    std::array<double, 3> lambda{};
+    if (!invert_map(mesh.degree, mesh.element(element), node.x, lambda, false)) continue;
+    node.q = {lambda[1], lambda[2]};
+    const MapPoint map = map_point(mesh, element, node.q);
+    node.dq = {cross(node.dx, map.dv) / map.det, cross(map.du, node.dx) / map.det};
+    nodes_.push_back(node);
   }
 }
 
@@ -315,6 +334,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
         static_cast<std::size_t>(g.components));
     components += static_cast<std::size_t>(g.components);
     have_moments_[i] = 0;
+    extended_[i] = 0;
   }
   const auto corners = target_.corners(t);
   origin_ = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
@@ -323,27 +343,40 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
   // The regions: shape and area do not depend on the fields.
   const bool batch =
       donor_.degree == target_.degree && target_.degree <= max_batch_degree && blocks == nullptr;
-  const auto first_batched = static_cast<std::size_t>(
-      batch ? std::find(batched_.begin(), batched_.end(), 1) - batched_.begin() : groups_.size());
+  const std::size_t first_batched =
+      batch ? static_cast<std::size_t>(std::find(batched_.begin(), batched_.end(), 1) -
+                                       batched_.begin())
+            : groups_.size();
   have_segments_ = false;
+  loose_ = own.loose();
   const bool summed = shape_regions(t, own, first_batched, outcome);
   double total = 0.0;
   double extended = 0.0;
-  const std::size_t first_given = given.mass.size();
-  for (std::size_t k = 0; k < own.donors.size(); ++k) {
+  const std::size_t regions = own.donors.size(), first_given = given.donor.size();
+  given.target.resize(first_given + regions, t);
+  given.donor.resize(first_given + regions);
+  given.area.resize(first_given + regions);
+  std::size_t pairs = first_given;
+  for (std::size_t k = 0; k < regions; ++k) {
     const std::int32_t d = own.donors[k];
-    total += area_[k];
+    const double area = area_[k];
+    total += area;
     if (d == exterior) {
-      outcome.uncovered_area = std::max(area_[k], 0.0);
+      outcome.uncovered_area = std::max(area, 0.0);
       continue;
     }
-    outcome.covered_area += area_[k];
-    given.target.push_back(t);
-    given.donor.push_back(d);
-    given.area.push_back(area_[k]);
-    ++outcome.pairs;
+    outcome.covered_area += area;
+    given.donor[pairs] = d;
+    given.area[pairs] = area;
+    ++pairs;
   }
-  given.mass.resize(first_given + static_cast<std::size_t>(outcome.pairs) * components);
+  if (pairs < first_given + regions) {
+    given.target.resize(pairs);
+    given.donor.resize(pairs);
+    given.area.resize(pairs);
+  }
+  outcome.pairs = static_cast<std::int32_t>(pairs - first_given);
+  given.mass.resize(pairs * components);
 
   std::size_t c0 = 0;
   for (std::size_t i = 0; i < groups_.size(); ++i) {
@@ -358,7 +391,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
     }
     const bool fitted = fitted_[i] != 0 && !own.donors.empty();
     if (fitted) fit_.begin(i, g, t, all_runs(own), blocks == nullptr);
-    double* to = given.mass.data() + first_given + c0;
+    double* to = given.mass.data() + first_given * components + c0;
     for (std::size_t k = 0; k < own.donors.size(); ++k) {
       const std::int32_t d = own.donors[k];
       const double area = area_[k];
@@ -367,6 +400,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
         const bool silent = std::abs(area) <= silent_gap * own_area;
         if (!(silent || policy_ == Uncovered::extend)) continue;
         if (i == 0) extended += area;
+        extended_[i] = 1;
         const auto run = run_of(own, k);
         if (blocks != nullptr) {
           extension_blocks(g, t, run, area, run_shape(run).centre, sums_[i], *blocks);
@@ -383,7 +417,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
           if (blocks == nullptr && by_moments(g, t, d)) {
             begin_moments(i);
             add_pair_moments(g, t, d, shape, base_[i].data(), moment_sums_[i], here);
-          } else if (fitted) {
+          } else if (fitted && fit_.finds_mass(d)) {
             // The masses of all pairs by one rule: its errors cancel between neighbours.
             fitted_mass_.assign(nc, 0.0);
             add_pair(g, t, d, run, area, shape.centre, sums_[i], fitted_mass_);
@@ -398,11 +432,22 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
       to += components;
       if (blocks != nullptr) keep_pair(d, sums_[i], here, *blocks);
     }
-    if (fitted) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
+    if (fitted) {
+      // What is there so far has the whole polynomials.
+      const auto constant = fit_.constant();
+      std::copy(constant.begin(), constant.end(), base_[i].begin());
+      for (std::size_t n = 0; n < sums_[i].basis.size(); ++n)
+        for (std::size_t c = 0; c < nc; ++c)
+          sums_[i].product[n * nc + c] -= constant[c] * sums_[i].basis[n];
+      fit_.take(sums_[i].product.data(), sums_[i].basis.data());
+    }
     c0 += nc;
   }
+  if (loose_ && blocks == nullptr && components > 0) give_strips(t, own, components, given, made);
   outcome.partition_residual = std::abs(total - own_area) / own_area;
-  if (outcome.partition_residual > largest_joint_gap) outcome.inconsistent = true;
+  if (outcome.partition_residual > largest_joint_gap &&
+      outcome.partition_residual > largest_partition_residual(t))
+    outcome.inconsistent = true;
   const double integrated = outcome.covered_area + extended;
   // Reading the clock takes as long as a small solution: every so many elements are measured.
   const bool timed = elements_++ % timed_elements == 0;
@@ -417,7 +462,9 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
     c0 += nc;
     if (finish_straight(i, t, mass, integrated, result, outcome)) continue;
     if (have_moments_[i] != 0) moments_to_powers(i, t);
-    finish(groups_[i], t, sums_[i], mass, base_[i], integrated, result, outcome);
+    std::span<const double> whole;
+    if (outcome.uncovered_area == 0.0 && batch) whole = whole_[i];
+    finish(groups_[i], t, sums_[i], whole, mass, base_[i], integrated, result, outcome);
   }
   if (timed) {
     outcome.solve_seconds =

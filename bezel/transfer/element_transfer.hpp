@@ -90,20 +90,29 @@ class ElementTransfer {
     Vec2 centre;    // mean of the corners
     Vec2 relative;  // the same, from origin_
     double area;
-    double gap;  // by how much the pieces fail to close
+    double gap;  // the widest open joint
   };
+  /// Also fills piece_control_ and bridges_.
   RunShape run_shape(std::span<const Segment> run);
+  double bridge_joints();
+  void give_strips(std::int32_t t, const ElementPieces& own, std::size_t components,
+                   GivenList& given, std::span<double> made);
+  double largest_partition_residual(std::int32_t t) const;
   // By moments (element_moments.cpp).
   static bool by_moments(const Group& g, std::int32_t t, std::int32_t d);
   const PieceTable& piece_table(int degree, int moments);
   void add_pair_moments(const Group& g, std::int32_t t, std::int32_t d, const RunShape& shape,
                         const double* base, Accumulators& sums, std::span<double> mass);
   void moments_to_powers(std::size_t i, std::int32_t t);
-  bool moment_factor(const Group& g, std::int32_t t);
+  /// Sets moments_ to those of target element t in its coordinates.
+  void element_moments(const Group& g, std::int32_t t, int degree);
+  bool moment_factor(const Group& g, std::int32_t t, std::span<const double> whole);
   static bool can_batch(const Group& g);
   static TargetPlace target_place(const Group& g, std::int32_t t);
   void begin_moments(std::size_t group);
   void fill_batch(std::span<const BoundaryPiece> pieces);
+  template <std::size_t points>
+  void fill_curves(std::span<const BoundaryPiece> pieces);
   /// Notes the regions' areas; returns whether the batch now holds the sums of group `first`.
   bool shape_regions(std::int32_t t, const ElementPieces& own, std::size_t first,
                      ElementOutcome& outcome);
@@ -138,18 +147,25 @@ class ElementTransfer {
                      ElementBlocks& blocks, ElementOutcome& outcome);
   /// Solves for mass.size() components into result, [n][component].
   /// @param base  [component] constants that the sums lack
+  /// @param whole  as for factor()
   void finish(const Group& g, std::int32_t t, const Accumulators& sums,
-              std::span<const double> mass, std::span<const double> base, double area,
-              std::span<double> result, ElementOutcome& outcome);
+              std::span<const double> whole, std::span<const double> mass,
+              std::span<const double> base, double area, std::span<double> result,
+              ElementOutcome& outcome);
   /// The same for group i on a covered straight element, when it went by moments alone.
   bool finish_straight(std::size_t i, std::int32_t t, std::span<const double> mass, double area,
                        std::span<double> result, ElementOutcome& outcome);
-  /// Whether the space's frame is another than the triangle computed on.
-  bool in_other_frame(const Group& g, std::int32_t t) const;
+  struct Solution;
+  /// As finish(), for up to `width` components from number c0 on.
+  template <std::size_t width>
+  static void finish_components(const Solution& s, const Accumulators& sums,
+                                std::span<const double> mass, std::span<const double> base,
+                                std::size_t c0, std::span<double> result, ElementOutcome& outcome);
   const MassRule& mass_rule(int degree);
   const MappedMass& mapped_mass(int degree);
   static bool factorize(std::size_t n, Factor& factor);
-  const Factor& factor(const Group& g, std::int32_t t);
+  /// @param whole  moments of the element up to twice the degree, when known
+  const Factor& factor(const Group& g, std::int32_t t, std::span<const double> whole);
   /// Makes room for `more` points in the arrays.
   void reserve_points(std::size_t more);
   void push(double w, double tu, double tv, double du, double dv) {
@@ -183,15 +199,23 @@ class ElementTransfer {
   Vec2 origin_;  // of the pieces' control points, on the target element
   std::vector<Vec2> piece_control_, local_control_;
   std::vector<int> piece_degree_;
+  // Straight pieces across open joints of the region run_shape was asked for last, from origin_.
+  struct Bridge {
+    Vec2 from, step;
+  };
+  std::vector<Bridge> bridges_;
+  std::vector<Vec2> piece_starts_, piece_ends_;
+  bool loose_ = false;  // this element's joints may be open a little
   std::vector<MomentPiece> moment_pieces_;
   std::vector<std::unique_ptr<PieceTable>> tables_;
   std::vector<double> moments_;
   PieceBatch batch_;
   std::vector<BatchRegion> regions_;
-  std::vector<double> area_;          // by region
-  std::vector<double> region_mass_;   // of one group, [region][component]
-  std::vector<Segment> segments_;     // of this element, when have_segments_
-  std::vector<std::size_t> run_end_;  // by region
+  std::vector<double> area_;           // by region
+  std::vector<std::uint8_t> bridged_;  // by region: has bridges
+  std::vector<double> region_mass_;    // of one group, [region][component]
+  std::vector<Segment> segments_;      // of this element, when have_segments_
+  std::vector<std::size_t> run_end_;   // by region
   bool have_segments_ = false;
   std::vector<double> w_, tu_, tv_, du_, dv_;  // quadrature points, the first count_ in use
   std::size_t count_ = 0;
@@ -200,8 +224,12 @@ class ElementTransfer {
   std::vector<Lambda> start_;
   std::vector<InverseResult> inverse_;
   std::vector<Accumulators> sums_, moment_sums_;
+  std::vector<std::vector<double>> whole_;  // by group, of batched ones on curved elements: moments
+                                            // of all regions together
+  std::vector<double> powers_;
   std::vector<std::vector<double>> base_;   // by group, [component]: taken off before integrating
   std::vector<std::uint8_t> have_moments_;  // by group: for this element
+  std::vector<std::uint8_t> extended_;      // by group: into what no donor covers of this element
   std::vector<std::uint8_t> batched_;       // by group: goes by add_batched
   PairFit fit_;
   std::vector<std::uint8_t> fitted_;  // by group: goes by fit_

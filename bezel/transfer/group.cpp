@@ -1,7 +1,9 @@
 #include "bezel/transfer/group.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "bezel/field/integrals.hpp"
 #include "bezel/transfer/accumulate.hpp"
 #include "bezel/transfer/moments.hpp"
 #include "bezel/transfer/piece_batch.hpp"
@@ -9,18 +11,22 @@
 namespace bezel::detail {
 namespace {
 
-/// The triangle of the corners serves as a frame when it has at least this fraction of the
-/// element's area.
-constexpr double fitting_corners = 0.5;
+/// The target's polynomials may stay on the triangle they were computed on when the space's frame
+/// is that triangle, up to the rounding of barycentric coordinates at its place in the plane.
+bool is_frame(const Frame& frame, const std::array<Vec2, 3>& corners) {
+  double slope = 0.0;
+  for (const Vec2& g : frame.gradient) slope = std::max({slope, std::abs(g[0]), std::abs(g[1])});
+  const double reach = std::max(std::abs(frame.centre[0]), std::abs(frame.centre[1]));
+  double largest = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Lambda l = frame.lambda(corners[k]);
+    for (std::size_t i = 0; i < 3; ++i)
+      largest = std::max(largest, std::abs(l[i] - (i == k ? 1.0 : 0.0)));
+  }
+  return largest <= 0x1p-51 * (2.0 + reach * slope);
+}
 
 }  // namespace
-
-bool corners_fit(const OverlayMesh& target, std::int32_t t) {
-  if (target.degree == 1) return true;
-  const auto corners = target.corners(t);
-  const double corner_area = 0.5 * cross(corners[1] - corners[0], corners[2] - corners[0]);
-  return corner_area >= fitting_corners * target.element_area[static_cast<std::size_t>(t)];
-}
 
 Frame affine_frame(const std::array<Vec2, 3>& p) {
   Frame frame;
@@ -38,6 +44,7 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
              std::span<const Field* const> fields, std::shared_ptr<const Space> target_space_in)
     : donor_space(fields.front()->space_ptr()),
       target_space(std::move(target_space_in)),
+      donor_degree{donor_space->highest_degree(), donor_space->uniform_degree()},
       donor_mapped(donor_space->basis() == Basis::reference && donor.degree > 1),
       target_mapped(target_space->basis() == Basis::reference && target.degree > 1) {
   for (const Field* f : fields) components += f->components();
@@ -47,10 +54,11 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
   const auto nc = static_cast<std::size_t>(components);
   scaled.resize(donor_space->coefficient_count() * nc);
   donor_mass.resize(elements * nc);
+  const std::vector<double> integrals = field_detail::basis_integrals(*donor_space);
   std::size_t c0 = 0;
   for (const Field* f : fields) {
     const auto own = static_cast<std::size_t>(f->components());
-    const std::vector<double> masses = element_integrals(*f);
+    const std::vector<double> masses = field_detail::element_integrals(*f, integrals);
     for (std::size_t e = 0; e < elements; ++e) {
       const auto coefficients = f->coefficients(ElementId(e));
       const auto factors = multinomials(donor_space->degree(ElementId(e)));
@@ -65,6 +73,29 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
     c0 += own;
   }
   out.resize(target_space->coefficient_count() * nc);
+  make_powers(elements);
+}
+
+Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
+             std::shared_ptr<const Space> donor_space_in,
+             std::shared_ptr<const Space> target_space_in, int components_in,
+             DonorDegree donor_degree_in, std::vector<double> scaled_in,
+             std::vector<double> donor_mass_in)
+    : donor_space(std::move(donor_space_in)),
+      target_space(std::move(target_space_in)),
+      components(components_in),
+      donor_degree(donor_degree_in),
+      donor_mapped(donor_space->basis() == Basis::reference && donor.degree > 1),
+      target_mapped(target_space->basis() == Basis::reference && target.degree > 1),
+      scaled(std::move(scaled_in)),
+      donor_mass(std::move(donor_mass_in)) {
+  make_frames(donor, target);
+  out.resize(target_space->coefficient_count() * static_cast<std::size_t>(components));
+  make_powers(donor.element_count());
+}
+
+void Group::make_powers(std::size_t elements) {
+  const auto nc = static_cast<std::size_t>(components);
   if (donor_mapped || target_mapped) return;
   powers.assign(scaled.size() + donor_padding, 0.0);
   for (std::size_t e = 0; e < elements; ++e) {
@@ -89,6 +120,7 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
     : donor_space(std::move(donor_space_in)),
       target_space(std::move(target_space_in)),
       components(bernstein::triangle_size(donor_space->highest_degree())),
+      donor_degree{donor_space->highest_degree(), donor_space->uniform_degree()},
       donor_mapped(donor_space->basis() == Basis::reference && donor.degree > 1),
       target_mapped(target_space->basis() == Basis::reference && target.degree > 1) {
   make_frames(donor, target);
@@ -100,7 +132,7 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
       for (std::size_t n = 0; n < factors.size(); ++n) scaled.push_back(n == c ? factors[n] : 0.0);
     }
   }
-  const std::vector<double> integrals = basis_integrals(donor_space, threads);
+  const std::vector<double> integrals = field_detail::basis_integrals(*donor_space, threads);
   donor_mass.assign(donor.element_count() * nc, 0.0);
   for (std::size_t e = 0; e < donor.element_count(); ++e) {
     const ElementId id(e);
@@ -110,29 +142,6 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
   }
 }
 
-std::vector<double> basis_integrals(const std::shared_ptr<const Space>& space, int threads) {
-  std::vector<double> integrals(space->coefficient_count());
-  const std::size_t elements = space->mesh()->element_count();
-  const int functions = bernstein::triangle_size(space->highest_degree());
-  const auto has = [&](std::size_t e, int n) {
-    return n < bernstein::triangle_size(space->degree(ElementId(e)));
-  };
-  for (int n = 0; n < functions; ++n) {
-    const auto place = [&](std::size_t e) {
-      return space->offset(ElementId(e)) + static_cast<std::size_t>(n);
-    };
-    std::vector<double> unit(space->coefficient_count(), 0.0);
-    for (std::size_t e = 0; e < elements; ++e) {
-      if (has(e, n)) unit[place(e)] = 1.0;
-    }
-    const std::vector<double> of =
-        element_integrals(Field("unit", space, std::move(unit)), threads);
-    for (std::size_t e = 0; e < elements; ++e) {
-      if (has(e, n)) integrals[place(e)] = of[e];
-    }
-  }
-  return integrals;
-}
 void Group::make_frames(const OverlayMesh& donor, const OverlayMesh& target) {
   if (!donor_mapped) {
     donor_frame.resize(donor.element_count());
@@ -142,11 +151,20 @@ void Group::make_frames(const OverlayMesh& donor, const OverlayMesh& target) {
                            : affine_frame(donor.corners(static_cast<std::int32_t>(e)));
     }
   }
+  if (target_space->basis() == Basis::physical && target.degree == 1) {
+    other_frame.resize(target.element_count());
+    for (std::size_t e = 0; e < other_frame.size(); ++e) {
+      const bool same =
+          target.degree == 1 &&
+          is_frame(target_space->frame(ElementId(e)), target.corners(static_cast<std::int32_t>(e)));
+      other_frame[e] = same ? 0 : 1;
+    }
+  }
   if (!target_mapped) {
     target_frame.resize(target.element_count());
     for (std::size_t e = 0; e < target_frame.size(); ++e) {
       const auto t = static_cast<std::int32_t>(e);
-      target_frame[e] = target_space->basis() == Basis::reference || corners_fit(target, t)
+      target_frame[e] = target_space->basis() == Basis::reference || target.degree == 1
                             ? affine_frame(target.corners(t))
                             : target_space->frame(ElementId(e));
     }

@@ -15,9 +15,11 @@ namespace bezel::detail {
 /// The triangle itself as a frame: lambda_k are its barycentrics.
 Frame affine_frame(const std::array<Vec2, 3>& corners);
 
-/// Whether the triangle of an element's corners is nearly the element: polynomials are then
-/// computed on it.
-bool corners_fit(const OverlayMesh& target, std::int32_t t);
+/// Degrees of a donor's elements.
+struct DonorDegree {
+  int highest = 0;
+  int uniform = -1;  ///< -1 when they differ
+};
 
 /// The components of all donor fields that share a donor space and go to the same target space.
 struct Group {
@@ -29,19 +31,27 @@ struct Group {
         std::shared_ptr<const Space> donor_space, std::shared_ptr<const Space> target_space,
         int threads);
 
+  /// On parts of the meshes: `scaled` and `donor_mass` are those of a group on the whole ones.
+  Group(const OverlayMesh& donor, const OverlayMesh& target,
+        std::shared_ptr<const Space> donor_space, std::shared_ptr<const Space> target_space,
+        int components, DonorDegree donor_degree, std::vector<double> scaled,
+        std::vector<double> donor_mass);
+
   std::shared_ptr<const Space> donor_space, target_space;
   std::shared_ptr<const Space> continuous_space;  ///< where the result is projected next, or null
   int components = 0;
+  DonorDegree donor_degree;          ///< of the whole donor, on a part too
   bool donor_mapped, target_mapped;  ///< polynomial in reference coordinates of a curved element
   std::vector<Frame>
       donor_frame;  ///< affine triangles of the donor's polynomials that are not mapped
-  /// Affine triangles on which the target's polynomials are computed: the triangle of the element's
-  /// corners where it fits the element (mass matrices are well conditioned there), else the space's
-  /// own frame.
+  /// Affine triangles on which the target's polynomials are computed: straight elements themselves,
+  /// else the space's own frames.
   std::vector<Frame> target_frame;
-  std::vector<double> scaled;      ///< donor coefficients times multinomials, per element
-                                   ///< [component][n]; of basis functions per degree
-  std::vector<double> donor_mass;  ///< per element [component]
+  std::vector<std::uint8_t> other_frame;  ///< whether the space's own frame is another one, by
+                                          ///< target element; empty when the space has none
+  std::vector<double> scaled;             ///< donor coefficients times multinomials, per element
+                                          ///< [component][n]; of basis functions per degree
+  std::vector<double> donor_mass;         ///< per element [component]
   /// Coefficients of the monomials in the barycentrics less 1/3, per element [component][n]: of
   /// donors that are not mapped and have at most max_moment_degree.
   std::vector<double> powers;
@@ -52,14 +62,15 @@ struct Group {
     return powers.data() + donor_space->offset(ElementId(e)) * static_cast<std::size_t>(components);
   }
   std::span<double> target_out(std::int32_t e);
+  bool in_other_frame(std::int32_t t) const {
+    return !other_frame.empty() && other_frame[static_cast<std::size_t>(t)] != 0;
+  }
 
  private:
+  void make_powers(std::size_t elements);
   void make_frames(const OverlayMesh& donor, const OverlayMesh& target);
   std::vector<std::size_t> scaled_offset_;  // per degree, for basis functions
 };
-
-/// Integral of each basis function over its element, in the order of the coefficients.
-std::vector<double> basis_integrals(const std::shared_ptr<const Space>& space, int threads);
 
 /// Where point x lies for the polynomial of donor element d: barycentrics 1 and 2 in its frame, or
 /// in the reference triangle when it is mapped. `warm`: the last barycentrics found in d, when

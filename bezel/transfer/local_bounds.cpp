@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "bezel/base/parallel.hpp"
 #include "bezel/field/element_range.hpp"
@@ -18,31 +19,60 @@ constexpr double range_tolerance = 1e-10;
 /// Elements that share less than this fraction of the smaller one only touch.
 constexpr double touching = 1e-13;
 
+std::vector<std::int32_t> counted_as_zero(const TransferReport& report,
+                                          const TransferOptions& options) {
+  std::vector<std::int32_t> zero;
+  if (options.uncovered != Uncovered::zero) return zero;
+  for (const auto& part : report.uncovered_elements) zero.push_back(part.first.value);
+  return zero;
+}
+
 }  // namespace
+
+void check_bounds(const Bounds& bounds) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (bounds.kind != Bounds::Kind::global) return;
+  if (!(bounds.lo <= bounds.hi) || bounds.lo == infinity || bounds.hi == -infinity) {
+    throw InputError("transfer: found bounds " + fmt::format("{:.3g}", bounds.lo) + " to " +
+                     fmt::format("{:.3g}", bounds.hi) +
+                     ", expected two numbers in ascending order");
+  }
+}
+
+bool ElementBounds::overlaps(double shared_area, double donor_area, double target_area) {
+  return shared_area > touching * std::min(donor_area, target_area);
+}
+
+ElementBounds::ElementBounds(const Bounds& bounds, std::vector<Overlapping> pairs,
+                             std::vector<std::int32_t> zero, std::size_t targets, int threads)
+    : bounds_(bounds),
+      targets_(targets),
+      threads_(threads),
+      zero_(std::move(zero)),
+      pairs_(std::move(pairs)) {
+  if (bounds_.kind != Bounds::Kind::global || zero_.empty() ||
+      (bounds_.lo <= 0.0 && bounds_.hi >= 0.0))
+    return;
+  throw InputError("transfer: " + std::to_string(zero_.size()) +
+                   " uncovered triangles count as 0, which the bounds " +
+                   fmt::format("{:.3g}", bounds_.lo) + " to " + fmt::format("{:.3g}", bounds_.hi) +
+                   " leave out");
+}
 
 ElementBounds::ElementBounds(std::span<const double> donor_area,
                              std::span<const double> target_area,
                              std::span<const ChunkResult> chunks, const TransferReport& report,
                              const TransferOptions& options)
-    : bounds_(options.bounds), targets_(target_area.size()), threads_(options.threads) {
-  if (options.uncovered == Uncovered::zero) {
-    for (const auto& part : report.uncovered_elements) zero_.push_back(part.first.value);
-  }
-  if (bounds_.kind == Bounds::Kind::global && !zero_.empty() &&
-      (bounds_.lo > 0.0 || bounds_.hi < 0.0)) {
-    throw InputError("transfer: " + std::to_string(zero_.size()) +
-                     " uncovered triangles count as 0, which the bounds " +
-                     fmt::format("{:.3g}", bounds_.lo) + " to " +
-                     fmt::format("{:.3g}", bounds_.hi) + " leave out");
-  }
+    : ElementBounds(options.bounds, {}, counted_as_zero(report, options), target_area.size(),
+                    options.threads) {
   if (bounds_.kind != Bounds::Kind::local) return;
   for (const ChunkResult& r : chunks) {
     for (std::size_t i = 0; i < r.given.donor.size(); ++i) {
       const std::int32_t d = r.given.donor[i];
       const std::int32_t t = r.given.target[i];
-      const double smaller = std::min(donor_area[static_cast<std::size_t>(d)],
-                                      target_area[static_cast<std::size_t>(t)]);
-      if (r.given.area[i] > touching * smaller) pairs_.push_back({t, d});
+      if (overlaps(r.given.area[i], donor_area[static_cast<std::size_t>(d)],
+                   target_area[static_cast<std::size_t>(t)]))
+        pairs_.push_back({t, d});
     }
   }
 }

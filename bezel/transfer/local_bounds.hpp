@@ -11,6 +11,9 @@
 
 namespace bezel::detail {
 
+/// @throws InputError for global bounds that are not two ascending numbers
+void check_bounds(const Bounds& bounds);
+
 /// Bounds of each target element's values, for one component of a field after the other.
 ///
 /// Local ones are the range of the donor over the donor elements that overlap the target element;
@@ -21,18 +24,27 @@ namespace bezel::detail {
 /// composition, 1e-13)
 class ElementBounds {
  public:
+  struct Overlapping {
+    std::int32_t target, donor;
+  };
   /// @param donor_area, target_area  of the elements
   /// @param report                   of the sweep that left `chunks`
   /// @throws InputError for global bounds that leave out 0 where the field counts as 0
   ElementBounds(std::span<const double> donor_area, std::span<const double> target_area,
                 std::span<const ChunkResult> chunks, const TransferReport& report,
                 const TransferOptions& options);
+  /// @param pairs  those that overlaps() says (local bounds)
+  /// @param zero   target elements where the field counts as 0 in part
+  /// @throws InputError as above
+  ElementBounds(const Bounds& bounds, std::vector<Overlapping> pairs,
+                std::vector<std::int32_t> zero, std::size_t targets, int threads);
+
+  /// Whether two elements share more than rounding, or only touch.
+  static bool overlaps(double shared_area, double donor_area, double target_area);
+
   ValueBounds operator()(const Field& donor, int component) const;
 
  private:
-  struct Overlapping {
-    std::int32_t target, donor;
-  };
   ValueBounds local(const Field& donor, int component) const;
 
   Bounds bounds_;

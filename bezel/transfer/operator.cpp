@@ -4,14 +4,19 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <vector>
 
 #include "bezel/base/atomic_file.hpp"
 #include "bezel/base/parallel.hpp"
+#include "bezel/field/integrals.hpp"
 #include "bezel/transfer/element_mass.hpp"
 #include "bezel/transfer/layout.hpp"
+#include "bezel/transfer/limit.hpp"
+#include "bezel/transfer/local_bounds.hpp"
 #include "bezel/transfer/operator_rows.hpp"
+#include "bezel/transfer/report.hpp"
 #include "bezel/transfer/sweep.hpp"
 
 namespace bezel {
@@ -62,6 +67,14 @@ struct TransferOperator::Impl {
   std::vector<std::vector<double>> lost;     // per such element, mass outside of its functions
   std::vector<OperatorRows::MadeMass> made;  // mass of extensions
 
+  bool zero_uncovered = false;
+  std::vector<double> target_area;
+  /// The values that the targets may take.
+  detail::ElementBounds element_bounds(const Bounds& bounds, int threads) const;
+  /// A field moved into bounds, component by component.
+  std::vector<detail::Limited> limit(const Field& donor, const Field& moved,
+                                     const detail::ElementBounds& bounds, int threads) const;
+
   /// Shape (components); returns the largest |element mass - mass received| too.
   struct Applied {
     Field field;
@@ -93,7 +106,9 @@ TransferOperator::TransferOperator(std::shared_ptr<const Space> donor,
                     });
   m.rows.index_donors();
   m.made = m.rows.take_made();
-  m.integrals = detail::basis_integrals(m.target, options.threads);
+  m.integrals = field_detail::basis_integrals(*m.target, options.threads);
+  m.zero_uncovered = options.uncovered == Uncovered::zero;
+  m.target_area = to.element_area;
   const auto columns = static_cast<std::size_t>(group.components);
   for (const std::int32_t d : swept.outside) {
     const std::size_t begin = static_cast<std::size_t>(d) * columns;
@@ -205,18 +220,76 @@ TransferOperator::Impl::Applied TransferOperator::Impl::apply(const Field& f, in
           *std::ranges::max_element(defects)};
 }
 
+detail::ElementBounds TransferOperator::Impl::element_bounds(const Bounds& bounds,
+                                                             int threads) const {
+  detail::check_bounds(bounds);
+  std::vector<detail::ElementBounds::Overlapping> pairs;
+  if (bounds.kind == Bounds::Kind::local) {
+    const std::vector<double> own = field_detail::basis_integrals(*donor, threads);
+    std::vector<double> donor_area(donor->mesh()->element_count());
+    for (std::size_t d = 0; d < donor_area.size(); ++d) {
+      const auto begin = own.begin() + static_cast<std::ptrdiff_t>(donor->offset(ElementId(d)));
+      donor_area[d] = std::accumulate(
+          begin, begin + static_cast<std::ptrdiff_t>(size_on(*donor, static_cast<std::int32_t>(d))),
+          0.0);
+    }
+    for (std::size_t chunk = 0; chunk < rows.chunk_count(); ++chunk) {
+      rows.for_rows(chunk, [&](const OperatorRows::Row& row) {
+        for (const OperatorRows::Block& block : row.blocks) {
+          // The functions add up to 1, and what each gives to the area that the pair shares.
+          const double shared = std::accumulate(block.mass.begin(), block.mass.end(), 0.0);
+          if (detail::ElementBounds::overlaps(shared,
+                                              donor_area[static_cast<std::size_t>(block.donor)],
+                                              target_area[static_cast<std::size_t>(row.target)]))
+            pairs.push_back({row.target, block.donor});
+        }
+      });
+    }
+  }
+  std::vector<std::int32_t> zero;
+  for (const auto& part : report.uncovered_elements)
+    if (zero_uncovered) zero.push_back(part.first.value);
+  return {bounds, std::move(pairs), std::move(zero), target_area.size(), threads};
+}
+
+std::vector<detail::Limited> TransferOperator::Impl::limit(const Field& from, const Field& moved,
+                                                           const detail::ElementBounds& bounds,
+                                                           int threads) const {
+  std::vector<detail::Limited> limited;
+  for (int c = 0; c < moved.components(); ++c)
+    limited.push_back(detail::limit_discontinuous(moved, c, bounds(from, c), target_area, threads));
+  return limited;
+}
+
 Field TransferOperator::apply(const Field& donor, int threads) const {
   return impl_->apply(donor, threads).field;
 }
 
+Field TransferOperator::apply(const Field& donor, const Bounds& bounds, int threads) const {
+  Field moved = impl_->apply(donor, threads).field;
+  if (bounds.kind == Bounds::Kind::none) return moved;
+  const detail::ElementBounds values = impl_->element_bounds(bounds, threads);
+  return detail::with_coefficients(moved, impl_->limit(donor, moved, values, threads));
+}
+
 TransferResult TransferOperator::transfer(std::span<const Field> donors, int threads) const {
+  return transfer(donors, Bounds{}, threads);
+}
+
+TransferResult TransferOperator::transfer(std::span<const Field> donors, const Bounds& bounds,
+                                          int threads) const {
   const auto start = std::chrono::steady_clock::now();
   const Impl& m = *impl_;
   TransferResult result;
   result.report = m.report;
   result.report.seconds = {};
-  for (const Field& f : donors) {
-    const Impl::Applied applied = m.apply(f, threads);
+  std::optional<detail::ElementBounds> values;
+  if (bounds.kind != Bounds::Kind::none) values.emplace(m.element_bounds(bounds, threads));
+  detail::Reports reports(donors.size(), threads);
+  result.fields.reserve(donors.size());
+  for (std::size_t k = 0; k < donors.size(); ++k) {
+    const Field& f = donors[k];
+    Impl::Applied applied = m.apply(f, threads);
     const auto nc = static_cast<std::size_t>(f.components());
     std::vector<double> outside(nc, 0.0);
     std::vector<double> made(nc, 0.0);
@@ -229,10 +302,20 @@ TransferResult TransferOperator::transfer(std::span<const Field> donors, int thr
     for (std::size_t i = 0; i < m.outside.size(); ++i) add(m.outside[i], m.lost[i], outside);
     for (const OperatorRows::MadeMass& part : m.made) add(part.donor, part.mass, made);
     const std::vector<double> defect(nc, applied.max_mass_defect);
-    detail::append_reports(f, applied.field, outside, made, {}, defect, threads,
-                           result.report.fields);
-    result.fields.push_back(applied.field);
+    std::vector<detail::Limited> limited;
+    if (values) {
+      limited = m.limit(f, applied.field, *values, threads);
+      applied.field = detail::with_coefficients(applied.field, limited);
+    }
+    result.fields.push_back(std::move(applied.field));
+    const auto lines = reports.add(k, f, result.fields.back(), outside, made, {}, defect);
+    for (std::size_t c = 0; c < limited.size(); ++c) {
+      lines[c].min_after = limited[c].range.lo;
+      lines[c].max_after = limited[c].range.hi;
+      lines[c].bounds = limited[c].report;
+    }
   }
+  result.report.fields = reports.finish();
   result.report.seconds.total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

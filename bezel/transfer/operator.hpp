@@ -26,7 +26,7 @@ class TransferOperator {
  public:
   /// @param donor    where the fields live; a continuous space is taken element by element
   /// @param target   mesh to go to
-  /// @param options  as in transfer(); no weight, no density
+  /// @param options  as in transfer(); no weight, no density, no bounds (they go with apply())
   /// @throws InputError, UncoveredError, NumericsError as transfer()
   /// @cost     the geometry and integrals of about size/3 fields at once, size being the number of
   ///           coefficients of a donor element. Memory: 8 (n_T + 1) n_D bytes per pair of elements,
@@ -55,8 +55,15 @@ class TransferOperator {
   ///           every element is closed to rounding
   /// @cost     2 n_T n_D operations per pair and component
   Field apply(const Field& donor, int threads = 0) const;
+  /// apply(), then each component is moved into bounds without changing its mass, as transfer()
+  /// does: no linear map any more, and neither the adjoint's nor the matrix's.
+  /// @throws InputError also for bounds that are not ascending, or leave out 0 where uncovered
+  ///         parts count as 0; NumericsError when they cannot hold the mass
+  Field apply(const Field& donor, const Bounds& bounds, int threads = 0) const;
   /// apply() to several fields, with the report of transfer().
   TransferResult transfer(std::span<const Field> donors, int threads = 0) const;
+  TransferResult transfer(std::span<const Field> donors, const Bounds& bounds,
+                          int threads = 0) const;
   /// The adjoint in L2: the field a on the donor with (a, f) = (apply(f), g) for all f of the donor
   /// space (element by element also where that space is continuous).
   /// @throws InputError when the field does not live on the target space

@@ -130,8 +130,11 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
   for (const std::int32_t e : candidate_edges_) {
     const Box2& other = donor_.edge_box[static_cast<std::size_t>(e)];
     if (!generous.overlaps(other)) continue;
+    const CurveCache& facing = donor_.edge_cache[static_cast<std::size_t>(e)];
     const double distance =
-        coincidence_distance(own, donor_.edge_cache[static_cast<std::size_t>(e)]);
+        coincidence_distance(std::min(target_.edge_width[static_cast<std::size_t>(edge)],
+                                      donor_.edge_width[static_cast<std::size_t>(e)]),
+                             std::max(own.magnitude, facing.magnitude));
     const Vec2 room{{distance, distance}};
     Box2 wide = box;
     wide.lo -= room;
@@ -140,8 +143,15 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
     IntersectOptions options;
     options.coincidence_distance = distance;
     const auto donor_curve = donor_.edge(e);
-    intersect(own, donor_.edge_cache[static_cast<std::size_t>(e)], options, found_);
-    for (const Crossing& c : found_.crossings) {
+    intersect(own, facing, options, found_);
+    // Edges that are nearly parallel may be known to touch much better than where.
+    const auto opposite = [&](double r, double s) {
+      const Vec2 p = curve_point(curve, r);
+      if (norm(p - curve_point(donor_curve, s)) <= 2.0 * distance) return s;
+      return foot_point(donor_curve, p).s;
+    };
+    for (Crossing& c : found_.crossings) {
+      c.t = opposite(c.s, c.t);
       const auto [pa, da] = edge_point(curve, c.s);
       const auto [pb, db] = edge_point(donor_curve, c.t);
       const double sine = cross(da, db);
@@ -154,11 +164,12 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
       ++record.crossings;
     }
     for (const Tangency& c : found_.tangencies) {
-      contacts_.push_back({c.s, c.t, e, 0});
+      contacts_.push_back({c.s, opposite(c.s, c.t), e, 0});
       ++record.tangencies;
     }
     for (const Overlap& c : found_.overlaps) {
-      coincidences_.push_back({c.s0, c.s1, c.t0, c.t1, e});
+      coincidences_.push_back({c.s0, c.s1, opposite(c.s0, c.t0), opposite(c.s1, c.t1), e,
+                               c.gap > point_rounding * std::max(own.magnitude, facing.magnitude)});
       ++record.overlaps;
     }
     for (const UnresolvedBox& c : found_.unresolved) {
@@ -231,8 +242,8 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
 
 void ElementOverlay::add_donor_part(std::int32_t edge, double s0, double s1) {
   const auto& sides = donor_.edge_sides[static_cast<std::size_t>(edge)];
-  segments_.push_back({sides[0], Part{}, Part{edge, s0, s1}});
-  segments_.push_back({sides[1], Part{}, Part{edge, s1, s0}});
+  segments_.push_back({sides[0], one_curve, Part{}, Part{edge, s0, s1}});
+  segments_.push_back({sides[1], one_curve, Part{}, Part{edge, s1, s0}});
 }
 
 void ElementOverlay::donor_edges_inside(std::int32_t t) {
@@ -353,6 +364,28 @@ void ElementOverlay::add(std::int32_t t, OverlayList& list, OverlayCounts& count
   list.close();
 }
 
+// Where a vertex hangs, a long donor edge with an element on one side only lies along short ones
+// with elements on the other.
+std::pair<std::size_t, std::int32_t> ElementOverlay::facing_coincidence(const Record& record,
+                                                                        const Piece& piece,
+                                                                        bool reversed) const {
+  const auto donor_of = [&](const Coincidence& c) {
+    const bool same_direction = c.s0 < c.s1;
+    return donor_
+        .edge_sides[static_cast<std::size_t>(c.donor_edge)][same_direction != reversed ? 0 : 1];
+  };
+  const auto first = static_cast<std::size_t>(piece.coincidence);
+  const std::int32_t donor = donor_of(coincidences_[first]);
+  if (donor != exterior) return {first, donor};
+  const double middle = 0.5 * (piece.r0 + piece.r1);
+  for (std::size_t k = first + 1; k < record.coincidence_end; ++k) {
+    const Coincidence& c = coincidences_[k];
+    if (c.r0 >= middle) break;
+    if (c.r1 > middle && donor_of(c) != exterior) return {k, donor_of(c)};
+  }
+  return {first, exterior};
+}
+
 void ElementOverlay::find_segments(std::int32_t t) {
   segments_.clear();
   for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
@@ -363,7 +396,8 @@ void ElementOverlay::find_segments(std::int32_t t) {
       segment.target = {side.edge.value, piece.r0, piece.r1};
       segment.donor = piece.donor;
       if (piece.coincidence >= 0) {
-        const Coincidence& c = coincidences_[static_cast<std::size_t>(piece.coincidence)];
+        const auto [which, facing] = facing_coincidence(record, piece, side.reversed);
+        const Coincidence& c = coincidences_[which];
         // Parameters of the piece on the donor edge: the piece may be cut finer than the
         // coincidence.
         const auto map = [&](double r) {
@@ -375,9 +409,8 @@ void ElementOverlay::find_segments(std::int32_t t) {
               std::min(c.s0, c.s1), std::max(c.s0, c.s1));
         };
         segment.source = {c.donor_edge, map(piece.r0), map(piece.r1)};
-        const bool same_direction = c.s0 < c.s1;
-        segment.donor = donor_.edge_sides[static_cast<std::size_t>(c.donor_edge)]
-                                         [same_direction != side.reversed ? 0 : 1];
+        segment.donor = facing;
+        if (c.apart) segment.across = facing_coincidence(record, piece, !side.reversed).second;
       }
       if (side.reversed) {
         std::swap(segment.target.from, segment.target.to);

@@ -20,15 +20,19 @@
 
 namespace bezel::detail {
 
-/// Curves nearer to each other than this fraction of the smaller one count as coincident. Pieces
-/// merged so leave joints open by at most that much; the sums over a whole element close exactly
-/// all the same.
+/// Curves nearer to each other than this fraction of the thinnest element beside them count as
+/// coincident. Pieces merged so leave joints open by at most that much; the sums over a whole
+/// element close exactly all the same.
 inline constexpr double coincidence_fraction = 1e-13;
 /// ... and never less than the rounding of the coordinates themselves.
 inline constexpr double coordinate_rounding = 32.0 * 0x1p-53;
+inline constexpr double point_rounding = 4.0 * 0x1p-53;
+inline double coincidence_distance(double smallest_width, double largest_coordinate) {
+  return std::max(coincidence_fraction * smallest_width, coordinate_rounding * largest_coordinate);
+}
+/// Of two edges when their elements' widths are not looked at: never less than with them.
 inline double coincidence_distance(const CurveCache& a, const CurveCache& b) {
-  return std::max(coincidence_fraction * std::min(a.diameter, b.diameter),
-                  coordinate_rounding * std::max(a.magnitude, b.magnitude));
+  return coincidence_distance(std::min(a.diameter, b.diameter), std::max(a.magnitude, b.magnitude));
 }
 /// A contact tells sides only when it is this far (in parameter) from edge ends and from other
 /// contacts.
@@ -44,13 +48,18 @@ struct Part {
   double from = 0, to = 0;
 };
 
+/// Instead of an element: both parts of a segment are one curve.
+inline constexpr std::int32_t one_curve = -2;
+
 /// One piece of the boundary of (T n donor), run counter-clockwise. A piece on both meshes' edges
 /// has both parts.
 struct Segment {
   std::int32_t donor =
       exterior;  ///< donor element, or exterior: the part of T that no donor covers
-  Part target;   ///< edge -1 when the piece is no part of T's boundary
-  Part source;   ///< the same for the donor's boundary
+  std::int32_t across = one_curve;  ///< of parts that are apart by more than the rounding of
+                                    ///< points: the donor element beyond, or exterior
+  Part target;                      ///< edge -1 when the piece is no part of T's boundary
+  Part source;                      ///< the same for the donor's boundary
 };
 
 /// One piece of the boundaries inside or around a target element T, with the regions T n D on its
@@ -69,6 +78,7 @@ struct ElementPieces {
   /// Pieces by region, for each donor those that bound its region counter-clockwise: only where
   /// edges of both meshes coincide, touch or nearly so; else empty, and the pieces tell all.
   std::span<const Segment> segments;
+  bool loose() const { return !segments.empty(); }  ///< joints may be open a little
 };
 
 /// The overlays of several target elements.
@@ -131,6 +141,7 @@ class ElementOverlay {
   struct Coincidence {
     double r0, r1, s0, s1;
     std::int32_t donor_edge;
+    bool apart;  // by more than the rounding of points
   };
   struct Piece {
     double r0, r1;
@@ -190,6 +201,10 @@ class ElementOverlay {
   void next_group();
   void find_segments(std::int32_t t);
   void group_segments(OverlayList& list);
+  /// The coincidence of a piece whose donor edge has an element on the target element's side, and
+  /// that element.
+  std::pair<std::size_t, std::int32_t> facing_coincidence(const Record& record, const Piece& piece,
+                                                          bool reversed) const;
   std::int32_t locate_piece(std::span<const Vec2> curve, double r0, double r1) const;
   std::int32_t best_donor(const Vec2& p, double& margin) const;
   bool inside_target(std::int32_t t, std::span<const Vec2> curve, double s0, double s1) const;

@@ -79,6 +79,12 @@ OverlayMesh::OverlayMesh(std::shared_ptr<const TriangleMesh> source, const std::
                },
                threads);
   for (const Box2& b : element_box) box.include(b);
+  edge_width.resize(edges);
+  for (std::size_t e = 0; e < edges; ++e) {
+    edge_width[e] = edge_cache[e].diameter;
+    for (const std::int32_t side : edge_sides[e])
+      if (side != exterior) edge_width[e] = std::min(edge_width[e], element_width(side));
+  }
 }
 
 std::array<Vec2, 3> OverlayMesh::corners(std::int32_t e) const {
@@ -95,6 +101,10 @@ std::vector<std::int32_t> OverlayMesh::spatial_order() const {
 FrontSearch::FrontSearch(const OverlayMesh& mesh) : mesh_(mesh), tree_(mesh.element_box) {
   collect_edges_at_vertices();
   if (mesh.degree == 1) straight_ = straight_elements(mesh);
+}
+
+FrontSearch::FrontSearch(const OverlayMesh& part, bool connected) : FrontSearch(part) {
+  connected_ = connected;
 }
 
 void FrontSearch::collect_edges_at_vertices() {

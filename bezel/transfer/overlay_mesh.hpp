@@ -38,8 +38,13 @@ struct OverlayMesh {
   std::vector<Box2> element_box;
   std::vector<double> element_area;      ///< exact up to rounding
   std::vector<double> element_diameter;  ///< of the boxes
+  std::vector<double> edge_width;        ///< smallest width of the elements beside each edge
   Box2 box;
+  std::vector<std::int32_t> numbers;  ///< of a part of a mesh: the elements' numbers in the whole
 
+  std::int32_t number_of(std::int32_t e) const {
+    return numbers.empty() ? e : numbers[static_cast<std::size_t>(e)];
+  }
   std::size_t element_count() const { return element_box.size(); }
   std::span<const Vec2> edge(std::int32_t e) const {
     const auto n = static_cast<std::size_t>(degree + 1);
@@ -54,6 +59,11 @@ struct OverlayMesh {
     return s[0] == element ? s[1] : s[0];
   }
   std::array<Vec2, 3> corners(std::int32_t e) const;
+  /// Twice the area over the diameter: about the smallest height of a triangle.
+  double element_width(std::int32_t e) const {
+    const auto i = static_cast<std::size_t>(e);
+    return 2.0 * element_area[i] / element_diameter[i];
+  }
   /// Elements in an order in which neighbours in the list are near each other (Morton order of the
   /// box centres).
   std::vector<std::int32_t> spatial_order() const;
@@ -65,6 +75,8 @@ struct OverlayMesh {
 class FrontSearch {
  public:
   explicit FrontSearch(const OverlayMesh& mesh);
+  /// Of a part of a mesh: `connected` is what the whole mesh is.
+  FrontSearch(const OverlayMesh& part, bool connected);
 
   /// Per-thread memory of the walk.
   struct Memory {

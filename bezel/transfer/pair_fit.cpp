@@ -24,7 +24,8 @@ constexpr int more_degrees = 3;
 constexpr double composed_accuracy = 1e-3;
 /// Places for donor elements whose maps are kept.
 constexpr std::size_t kept_donors = 256;
-/// Highest degree of fields that are not mapped: above, quadrature is more accurate.
+/// Highest degrees of fields, one of them mapped or none: above, quadrature is more accurate.
+constexpr int max_mapped_degree = 6;
 constexpr int max_plane_degree = 5;
 /// A point of a curve in an element may lie this much outside it, in barycentrics.
 constexpr double outside = 1e-6;
@@ -92,14 +93,18 @@ void pad(CurvePoints& points) {
 PairFit::PairFit(const OverlayMesh& donor, const OverlayMesh& target, std::size_t groups)
     : donor_(donor), target_(target), donors_(groups) {}
 
-bool PairFit::can(const Group& g, const OverlayMesh& donor, const OverlayMesh& target) {
-  const int pd = g.donor_space->highest_degree();
-  const int pt = g.target_space->highest_degree();
-  if (!g.donor_mapped && !g.target_mapped && std::max(pd, pt) > max_plane_degree) return false;
-  const int k = target_degree(g, target, pt);
-  const int m = fit_degree(g, target, pd);
-  return m <= max_fit_degree && k < static_cast<int>(2 * fit_lanes) && m + k <= max_fit_moments &&
-         (!g.donor_mapped || mass_degree(donor, pd) <= max_fit_degree);
+bool PairFit::in_reach(int donor_degree) const {
+  const int pt = g_->target_space->degree(ElementId(t_));
+  const int most = g_->donor_mapped || g_->target_mapped ? max_mapped_degree : max_plane_degree;
+  if (std::max(donor_degree, pt) > most) return false;
+  const int m = fit_degree(*g_, target_, donor_degree);
+  return m <= max_fit_degree && target_degree_ < static_cast<int>(2 * fit_lanes) &&
+         m + target_degree_ <= max_fit_moments;
+}
+
+bool PairFit::finds_mass(std::int32_t d) const {
+  if (!g_->donor_mapped) return g_->target_mapped;
+  return mass_degree(donor_, g_->donor_space->degree(ElementId(d))) <= max_fit_degree;
 }
 
 void PairFit::reserve(const FitTable& table, std::size_t components, int moments) {
@@ -193,8 +198,18 @@ void PairFit::begin(std::size_t i, const Group& g, std::int32_t t,
   // Of a donor, so that a constant leaves nothing to integrate.
   zero(constant_, static_cast<std::size_t>(g.components));
   const std::int32_t d = segments.back().donor;
-  if (around_a_constant && d != exterior) constant_ = donor_of(d).mean;
-  make_target_points(segments);
+  if (around_a_constant && d != exterior && (!g.donor_mapped || finds_mass(d)))
+    constant_ = donor_of(d).mean;
+  // Of this element's donors only: the bits do not depend on the rest of the mesh.
+  donor_degree_ = 0;
+  for (const Segment& segment : segments)
+    if (segment.donor != exterior)
+      donor_degree_ = std::max(donor_degree_, g.donor_space->degree(ElementId(segment.donor)));
+  ready_ = in_reach(donor_degree_);
+  if (ready_)
+    make_target_points(segments);
+  else
+    zero(constant_, constant_.size());
 }
 
 void PairFit::make_target_points(std::span<const Segment> segments) {
@@ -204,7 +219,7 @@ void PairFit::make_target_points(std::span<const Segment> segments) {
   if (seen_.size() < donor_.edge_box.size()) seen_.resize(donor_.edge_box.size());
   ++stamp_;
   // Degrees that interpolation adds are small and need no exact rule.
-  const int pd = g_->donor_space->highest_degree();
+  const int pd = donor_degree_;
   const int degree =
       target_degree_ + (g_->donor_mapped && pd > 0 ? pd + 1 : fit_degree(*g_, target_, pd));
   const bool mapped = g_->target_mapped;
@@ -355,12 +370,13 @@ bool PairFit::place_points(std::int32_t d, int m, int p, const FitFrame& frame) 
 
 bool PairFit::add(std::int32_t d, std::size_t begin, std::size_t end, double area,
                   std::span<double> mass) {
-  const Donor& donor = donor_of(d);
   const int pd = g_->donor_space->degree(ElementId(d));
+  const bool found = finds_mass(d);
+  if (g_->donor_mapped && !found) return false;
   if (g_->donor_mapped)
-    donor_mass(donor, begin, end, area, mass);
-  else if (g_->target_mapped)
-    plane_mass(d, begin, end, mass);
+    donor_mass(donor_of(d), begin, end, area, mass);
+  else if (found)
+    plane_mass(d, begin, end, area, mass);
   if (!ready_) return false;
   collect(begin, end);
   FitFrame frame = fit_frame(boundary_);
@@ -383,13 +399,16 @@ bool PairFit::add(std::int32_t d, std::size_t begin, std::size_t end, double are
   const double scale = frame.half[0] * frame.half[1] *
                        (target_map_.x[1] * target_map_.y[2] - target_map_.x[2] * target_map_.y[1]);
   const std::size_t stride = fit_stride(m + target_degree_);
+  const Donor& donor = donor_of(d);
   for (std::size_t c = 0; c < nc; ++c) {
     const double* term = terms_.data() + c * table.terms;
-    double sum = constant_[c] * moments_[0];
+    double sum = 0.0;
     for (int b = 0; b <= m; ++b)
       for (int a = 0; a <= m - b; ++a, ++term)
         sum += *term * moments_[static_cast<std::size_t>(b) * stride + static_cast<std::size_t>(a)];
-    mass[c] = scale * sum;
+    // Around the donor's mean, so that a constant gives its area exactly.
+    const double mean = donor.mean[c];
+    mass[c] = mean * area + scale * (sum - (mean - constant_[c]) * moments_[0]);
   }
   return true;
 }
@@ -451,7 +470,7 @@ void PairFit::append_one_by_one(std::int32_t d, const Part& part, int points) {
 }
 
 // Exactly, in the plane.
-void PairFit::plane_mass(std::int32_t d, std::size_t begin, std::size_t end,
+void PairFit::plane_mass(std::int32_t d, std::size_t begin, std::size_t end, double area,
                          std::span<double> mass) {
   const int pd = g_->donor_space->degree(ElementId(d));
   const Vec2 origin = target_map_.base;
@@ -467,7 +486,7 @@ void PairFit::plane_mass(std::int32_t d, std::size_t begin, std::size_t end,
   pad(boundary_);
   const FitFrame frame = fit_frame(boundary_);
   if (!(frame.half[0] > 0.0 && frame.half[1] > 0.0)) {
-    std::fill(mass.begin(), mass.end(), 0.0);
+    for (std::size_t c = 0; c < mass.size(); ++c) mass[c] = donor_of(d).mean[c] * area;
     return;
   }
   const FitTable& table = fit_table(pd);
@@ -485,11 +504,11 @@ void PairFit::plane_mass(std::int32_t d, std::size_t begin, std::size_t end,
   const std::size_t stride = fit_stride(pd);
   for (std::size_t c = 0; c < mass.size(); ++c) {
     const double* term = terms_.data() + c * table.terms;
-    double sum = donor_of(d).mean[c] * moments_[0];
+    double sum = 0.0;
     for (int b = 0; b <= pd; ++b)
       for (int a = 0; a <= pd - b; ++a, ++term)
         sum += *term * moments_[static_cast<std::size_t>(b) * stride + static_cast<std::size_t>(a)];
-    mass[c] = sum * frame.half[0] * frame.half[1];
+    mass[c] = donor_of(d).mean[c] * area + sum * frame.half[0] * frame.half[1];
   }
 }
 
@@ -525,9 +544,7 @@ void PairFit::take(double* product, double* basis) {
   const auto size = static_cast<std::size_t>(bernstein::triangle_size(p));
   const std::vector<double>& matrix = power_matrix(p);
   std::array<double, static_cast<std::size_t>(bernstein::triangle_size(max_power_degree))> moments;
-  std::vector<double>& powers = values_;
-  if (powers.size() < size) powers.resize(size);
-  for (std::size_t c = nc + 1; c-- > 0;) {
+  for (std::size_t c = 0; c <= nc; ++c) {
     double* sums = sums_.data() + c * rows;
     std::size_t n = 0;
     for (int b = 0; b <= p; ++b) {
@@ -546,12 +563,10 @@ void PairFit::take(double* product, double* basis) {
     for (n = 0; n < size; ++n) {
       const double sum =
           dot(std::span(matrix).subspan(n * size, size), std::span(moments).first(size));
-      if (c == nc) {
-        powers[n] = sum;
+      if (c == nc)
         basis[n] += sum;
-      } else {
-        product[n * nc + c] += constant_[c] * powers[n] + sum;
-      }
+      else
+        product[n * nc + c] += sum;
     }
   }
 }

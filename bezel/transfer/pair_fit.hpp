@@ -19,9 +19,6 @@ class PairFit {
  public:
   PairFit(const OverlayMesh& donor, const OverlayMesh& target, std::size_t groups);
 
-  /// Whether the degrees of a group are in reach.
-  static bool can(const Group& g, const OverlayMesh& donor, const OverlayMesh& target);
-
   /// Starts on target element t for group number i.
   /// @param around_a_constant  whether only what differs from one donor's mean is integrated
   void begin(std::size_t i, const Group& g, std::int32_t t, std::span<const Segment> segments,
@@ -29,8 +26,12 @@ class PairFit {
   /// Adds the pair with donor d, the segments begin .. end; false, and only the mass is found,
   /// where the maps are too far from affine for it.
   /// @param area  of the pair
-  /// @param mass  out, [component]; where one of the fields is mapped also when the answer is false
+  /// @param mass  out, [component]
   bool add(std::int32_t d, std::size_t begin, std::size_t end, double area, std::span<double> mass);
+  /// Whether add() finds the mass of a pair with donor d even where its answer is false.
+  bool finds_mass(std::int32_t d) const;
+  /// [component] what is left out of the donors for take().
+  std::span<const double> constant() const { return constant_; }
   /// Adds what the pairs since the last call gave: integrals with the powers l0^i l1^j l2^k of the
   /// target's barycentrics, product[n * components + c] and basis[n].
   void take(double* product, double* basis);
@@ -54,6 +55,7 @@ class PairFit {
                                // triangle
   };
 
+  bool in_reach(int donor_degree) const;
   const Rule& rule(int points);
   const Donor& donor_of(std::int32_t d);
   /// Makes room for the points of a table, values and terms, and moments of a degree.
@@ -70,7 +72,8 @@ class PairFit {
   void donor_mass(const Donor& donor, std::size_t begin, std::size_t end, double area,
                   std::span<double> mass);
   void append_one_by_one(std::int32_t d, const Part& part, int points);
-  void plane_mass(std::int32_t d, std::size_t begin, std::size_t end, std::span<double> mass);
+  void plane_mass(std::int32_t d, std::size_t begin, std::size_t end, double area,
+                  std::span<double> mass);
 
   const OverlayMesh& donor_;
   const OverlayMesh& target_;
@@ -83,6 +86,7 @@ class PairFit {
   std::int32_t t_ = 0;
   std::span<const Segment> segments_;
   int target_degree_ = 0;  // of the monomials, Jacobian included
+  int donor_degree_ = 0;   // highest of the element's donors
   bool ready_ = false;
   Vec2 origin_;
   MapPolynomial target_map_;

@@ -26,6 +26,9 @@ namespace bezel::detail {
 /// About the target's centre a donor's polynomial may grow by this factor beyond its size on the
 /// donor: so many roundings are lost.
 inline constexpr double steepest = 32.0;
+/// Of the matrices' rows, padded.
+inline constexpr std::size_t most_blocks =
+    (bernstein::triangle_size(2 * max_moment_degree) + moment_lanes - 1) / moment_lanes;
 }  // namespace bezel::detail
 #endif
 
@@ -115,17 +118,18 @@ HWY_INLINE void local_control(const PieceBatch& batch, std::size_t block, const 
   part_control<G>(v, from, to, b);
 }
 
-/// Numbers per piece and region with moments up to degree D: these, the step, and padding.
-template <int D>
-constexpr std::size_t width_of = (static_cast<std::size_t>(bernstein::triangle_size(D)) + 2 +
-                                  moment_lanes - 1) /
+/// Numbers per piece and region with moments up to degree D: these, the step, the area of curved
+/// pieces, and padding.
+template <int G, int D>
+constexpr std::size_t width_of = (static_cast<std::size_t>(bernstein::triangle_size(D)) +
+                                  (G == 1 ? 2 : 3) + moment_lanes - 1) /
                                  moment_lanes* moment_lanes;
 
 template <int G, int D>
 void piece_moments_of(const PieceTable& table, const std::vector<double>& weights,
-                      const TargetPlace& place, PieceBatch& batch) {
+                      const Vec2& origin, const TargetPlace& place, PieceBatch& batch) {
   constexpr std::size_t size = static_cast<std::size_t>(bernstein::triangle_size(D));
-  constexpr std::size_t width = width_of<D>;
+  constexpr std::size_t width = width_of<G, D>;
   for (std::size_t block = 0; block < batch.stride; block += moment_lanes) {
     Lanes a[G + 1], b[G + 1];
     local_control<G>(batch, block, place, a, b);
@@ -171,19 +175,24 @@ void piece_moments_of(const PieceTable& table, const std::vector<double>& weight
 #pragma GCC unroll 8
       for (int i = 0; i <= D - j; ++i, ++n) sums[n] *= 1.0 / static_cast<double>(i + j + 2);
     }
-    // The area, of the chord and of what lies between it and the piece: the same bits whatever the
-    // degree.
-    const Lanes step_a = a[G] - a[0], step_b = b[G] - b[0];
-    Lanes twice = a[0] * step_b - b[0] * step_a;
-    std::size_t w = G;
+    sums[size] = a[G] - a[0];
+    sums[size + 1] = b[G] - b[0];
+    if constexpr (G == 1) {
+      sums[0] = 0.5 * (a[0] * sums[size + 1] - b[0] * sums[size]);
+    } else {
+      // The area in the plane, whatever the coordinates and the degree: that of the chord, and of
+      // what lies between it and the piece.
+      const TargetPlace plane{origin, Vec2{{1, 0}}, Vec2{{0, 1}}, Vec2{{1, 0}}, Vec2{{0, 1}}, 1.0};
+      local_control<G>(batch, block, plane, a, b);
+      Lanes twice = a[0] * (b[G] - b[0]) - b[0] * (a[G] - a[0]);
+      std::size_t w = G;
 #pragma GCC unroll 4
-    for (int i = 1; i < G; ++i)
+      for (int i = 1; i < G; ++i)
 #pragma GCC unroll 4
-      for (int j = i + 1; j <= G; ++j, ++w)
-        twice += weights[w] * ((a[i] - a[0]) * (b[j] - b[0]) - (b[i] - b[0]) * (a[j] - a[0]));
-    sums[0] = 0.5 * twice;
-    sums[size] = step_a;
-    sums[size + 1] = step_b;
+        for (int j = i + 1; j <= G; ++j, ++w)
+          twice += weights[w] * ((a[i] - a[0]) * (b[j] - b[0]) - (b[i] - b[0]) * (a[j] - a[0]));
+      sums[size + 2] = 0.5 * twice;
+    }
     double* out = batch.moments.data() + block * width;
 #pragma GCC unroll 4
     for (std::size_t m = 0; m < width; m += moment_lanes) {
@@ -218,30 +227,44 @@ void sum_pieces(std::span<const BoundaryPiece> pieces, std::size_t regions, Piec
   }
 }
 
-template <int D>
-void region_sums_of(const PieceTable& table, const TargetPlace& place,
+template <int G, int D>
+void region_sums_of(const PieceTable& table, const Vec2& origin, const TargetPlace& place,
                     std::span<const BoundaryPiece> pieces, std::size_t regions, PieceBatch& batch) {
-  constexpr std::size_t width = width_of<D>;
+  constexpr std::size_t width = width_of<G, D>;
   batch.width = width;
+  batch.open = static_cast<std::size_t>(bernstein::triangle_size(D));
+  batch.area = G == 1 ? 0 : batch.open + 2;
+  batch.area_unit = G == 1 ? place.area : 1.0;
   if (batch.moments.size() < batch.stride * width) batch.moments.resize(2 * batch.stride * width);
   if (batch.sums.size() < regions * width) batch.sums.resize(2 * regions * width);
-  const std::vector<double>& weights = area_weights(table.degree);
-  if (table.degree == 1)
-    piece_moments_of<1, D>(table, weights, place, batch);
-  else if (table.degree == 2)
-    piece_moments_of<2, D>(table, weights, place, batch);
-  else
-    piece_moments_of<3, D>(table, weights, place, batch);
+  piece_moments_of<G, D>(table, area_weights(G), origin, place, batch);
   sum_pieces<width>(pieces, regions, batch);
 }
 
-void region_sums_target(const PieceTable& table, int degree, const TargetPlace& place,
-                        std::span<const BoundaryPiece> pieces, std::size_t regions,
-                        PieceBatch& batch) {
-  if (degree == 0) return region_sums_of<0>(table, place, pieces, regions, batch);
-  if (degree == 2) return region_sums_of<2>(table, place, pieces, regions, batch);
-  if (degree == 4) return region_sums_of<4>(table, place, pieces, regions, batch);
-  return region_sums_of<6>(table, place, pieces, regions, batch);
+template <int G>
+void region_sums_degree(const PieceTable& table, int degree, const Vec2& origin,
+                        const TargetPlace& place, std::span<const BoundaryPiece> pieces,
+                        std::size_t regions, PieceBatch& batch) {
+  switch (degree) {
+    case 0:
+      return region_sums_of<G, 0>(table, origin, place, pieces, regions, batch);
+    case 2:
+      return region_sums_of<G, 2>(table, origin, place, pieces, regions, batch);
+    case 4:
+      return region_sums_of<G, 4>(table, origin, place, pieces, regions, batch);
+    default:
+      return region_sums_of<G, 6>(table, origin, place, pieces, regions, batch);
+  }
+}
+
+void region_sums_target(const PieceTable& table, int degree, const Vec2& origin,
+                        const TargetPlace& place, std::span<const BoundaryPiece> pieces,
+                        std::size_t regions, PieceBatch& batch) {
+  if (table.degree == 1)
+    return region_sums_degree<1>(table, degree, origin, place, pieces, regions, batch);
+  if (table.degree == 2)
+    return region_sums_degree<2>(table, degree, origin, place, pieces, regions, batch);
+  return region_sums_degree<3>(table, degree, origin, place, pieces, regions, batch);
 }
 
 /// x := max(x, |y|)
@@ -393,7 +416,7 @@ void add_batch_target(int degree, const TargetPlace& place, const PieceBatch& ba
 void apply_matrix_target(std::size_t size, std::size_t padded, const double* matrix,
                          std::size_t components, const double* x, double* y) {
   for (std::size_t c = 0; c < components; ++c) {
-    Lanes sums[2] = {};
+    Lanes sums[most_blocks] = {};
     for (std::size_t m = 0; m < size; ++m) {
       const double value = x[m * components + c];
       for (std::size_t b = 0; b < padded / moment_lanes; ++b) {
@@ -402,9 +425,8 @@ void apply_matrix_target(std::size_t size, std::size_t padded, const double* mat
         sums[b] += value * row;
       }
     }
-    double result[2 * moment_lanes];
-    store(sums[0], result);
-    store(sums[1], result + moment_lanes);
+    double result[most_blocks * moment_lanes];
+    for (std::size_t b = 0; b < most_blocks; ++b) store(sums[b], result + b * moment_lanes);
     for (std::size_t n = 0; n < size; ++n) y[n * components + c] += result[n];
   }
 }
@@ -474,12 +496,12 @@ struct PaddedMatrix {
   std::vector<double> rows;
 };
 
-using MatrixByDegree = std::array<PaddedMatrix, max_moment_degree + 1>;
+using MatrixByDegree = std::array<PaddedMatrix, 2 * max_moment_degree + 1>;
 
 const PaddedMatrix& padded_power_matrix(int degree) {
   static const auto matrices = [] {
     MatrixByDegree all;
-    for (int d = 0; d <= max_moment_degree; ++d)
+    for (int d = 0; d <= 2 * max_moment_degree; ++d)
       all[static_cast<std::size_t>(d)] =
           PaddedMatrix(static_cast<std::size_t>(bernstein::triangle_size(d)), power_matrix(d));
     return all;
@@ -548,9 +570,9 @@ void PieceBatch::resize(std::size_t pieces, int degree) {
   }
 }
 
-void region_sums(const PieceTable& table, int degree, const TargetPlace& place,
+void region_sums(const PieceTable& table, int degree, const Vec2& origin, const TargetPlace& place,
                  std::span<const BoundaryPiece> pieces, std::size_t regions, PieceBatch& batch) {
-  HWY_DYNAMIC_DISPATCH(region_sums_target)(table, degree, place, pieces, regions, batch);
+  HWY_DYNAMIC_DISPATCH(region_sums_target)(table, degree, origin, place, pieces, regions, batch);
 }
 
 void add_batch(int degree, const TargetPlace& place, const PieceBatch& batch,

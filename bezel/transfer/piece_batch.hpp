@@ -28,8 +28,11 @@ struct PieceBatch {
   std::size_t width = 0;              ///< numbers per piece and per region
   std::vector<double> moments;        ///< [piece][n]
   /// [region][n]: moments about the target's centre in its coordinates, n = triangle_index(degree,
-  /// a, b), and after them by how much the pieces fail to close, first and second coordinate.
+  /// a, b), and more.
   std::vector<double> sums;
+  std::size_t open = 0;  ///< n: by how much the pieces fail to close, first coordinate; + 1: second
+  std::size_t area = 0;  ///< n: the area, in units of area_unit
+  double area_unit = 1;
   void resize(std::size_t pieces, int degree);
   const double* region(std::size_t i) const { return sums.data() + i * width; }
 };
@@ -37,8 +40,9 @@ struct PieceBatch {
 /// Fills batch.sums.
 /// @param table    for pieces of one degree, at most max_batch_degree; the batch's are of this one
 /// @param degree   of the moments: 0, 2, 4 or 6
+/// @param origin   areas of curved pieces are taken about it
 /// @param pieces   batch.count of them, their regions below `regions`
-void region_sums(const PieceTable& table, int degree, const TargetPlace& place,
+void region_sums(const PieceTable& table, int degree, const Vec2& origin, const TargetPlace& place,
                  std::span<const BoundaryPiece> pieces, std::size_t regions, PieceBatch& batch);
 
 /// A region that gets a donor's polynomial.
@@ -77,6 +81,7 @@ struct StraightSystem {
 double solve_straight(const StraightSystem& system, double* coefficients);
 
 /// powers[n][component] += integrals with l0^i l1^j l2^k from those with the monomials.
+/// @param degree  0 .. 2 max_moment_degree
 void powers_from_moments(int degree, int components, const double* moments, double* powers);
 
 }  // namespace bezel::detail

@@ -14,6 +14,12 @@ double functions(const Space& space) {
   return bernstein::triangle_size(space.highest_degree());
 }
 
+/// Bounds are kept after an operator is applied.
+TransferOptions without_bounds(TransferOptions options) {
+  options.bounds = {};
+  return options;
+}
+
 }  // namespace
 
 TransferSeries::TransferSeries(std::shared_ptr<const TriangleMesh> target, TransferOptions options,
@@ -21,7 +27,8 @@ TransferSeries::TransferSeries(std::shared_ptr<const TriangleMesh> target, Trans
     : target_(std::move(target)), options_(std::move(options)), memory_(memory) {}
 
 bool TransferSeries::worth_keeping(const Field& field) const {
-  if (options_.weight || !options_.density.empty() || !target_ || !detail::is_linear(options_))
+  if (options_.weight || !options_.density.empty() || !target_ ||
+      !detail::is_linear(without_bounds(options_)))
     return false;
   const double n = functions(field.space());
   const double t = options_.degree >= 0 ? bernstein::triangle_size(options_.degree) : n;
@@ -50,11 +57,11 @@ TransferResult TransferSeries::step(std::span<const Field> donors, bool comes_ag
         operators_, [&](const TransferOperator& o) { return o.accepts(f.space()); });
     std::size_t at = static_cast<std::size_t>(known - operators_.begin());
     if (known == operators_.end()) {
-      operators_.emplace_back(f.space_ptr(), target_, options_, progress);
+      operators_.emplace_back(f.space_ptr(), target_, without_bounds(options_), progress);
       seconds += operators_.back().report().seconds.total;
       ++geometries_;
     }
-    TransferResult moved = operators_[at].transfer({&f, 1}, options_.threads);
+    TransferResult moved = operators_[at].transfer({&f, 1}, options_.bounds, options_.threads);
     if (result.fields.empty()) {
       result.report = std::move(moved.report);
     } else {

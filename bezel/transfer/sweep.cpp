@@ -22,7 +22,7 @@ using clock = std::chrono::steady_clock;
 constexpr double silent_gap = 1e-10;
 /// Donor area outside the target, and target area without donor for Conserve::total, below this
 /// fraction of the element is rounding of the sums.
-constexpr double outside_rounding = 1e-13;
+constexpr double outside_rounding = 1e-14;
 
 double seconds_since(clock::time_point start) {
   return std::chrono::duration<double>(clock::now() - start).count();
@@ -223,37 +223,6 @@ std::size_t component_count(std::span<const Group> groups) {
   std::size_t components = 0;
   for (const Group& g : groups) components += static_cast<std::size_t>(g.components);
   return components;
-}
-
-void append_reports(const Field& donor, const Field& moved, std::span<const double> outside,
-                    std::span<const double> made, std::span<const double> spread,
-                    std::span<const double> element_defect, int threads,
-                    std::vector<FieldReport>& out) {
-  const auto before = integral(donor, threads);
-  const auto after = integral(moved, threads);
-  const auto size = integral_abs(donor, threads);
-  for (std::size_t c = 0; c < before.size(); ++c) {
-    FieldReport line;
-    line.name = donor.name();
-    line.component = static_cast<int>(c);
-    line.mass_before = before[c];
-    line.mass_after = after[c];
-    line.mass_outside = outside[c];
-    line.mass_made = made[c];
-    if (!spread.empty()) line.mass_spread = spread[c];
-    const double defect =
-        after[c] - (before[c] - line.mass_outside + line.mass_made + line.mass_spread);
-    const double scale = size[c] > 0.0 ? size[c] : 1.0;
-    line.relative_mass_defect = std::abs(defect) / scale;
-    line.max_element_defect = element_defect[c] / scale;
-    const auto range_before = value_range(donor, static_cast<int>(c));
-    const auto range_after = value_range(moved, static_cast<int>(c));
-    line.min_before = range_before.lo;
-    line.max_before = range_before.hi;
-    line.min_after = range_after.lo;
-    line.max_after = range_after.hi;
-    out.push_back(line);
-  }
 }
 
 }  // namespace bezel::detail

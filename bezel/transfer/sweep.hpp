@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -73,15 +74,18 @@ Swept sweep(const OverlayMesh& donor, const OverlayMesh& target, std::span<Group
             const TransferOptions& options, const Progress& progress,
             const VisitBlocks& visit = {});
 
+/// Works on all target elements: what sweep_elements() does with OverlayMesh::spatial_order(), here
+/// or elsewhere.
+using Sweeper = std::function<std::vector<ChunkResult>(
+    const OverlayMesh& donor, const OverlayMesh& target, const FrontSearch& search,
+    std::span<Group> groups, const TransferOptions& options, const Progress& progress)>;
+
+/// transfer() with the target elements worked on by `sweeper`.
+TransferResult transfer_by(const Sweeper& sweeper, std::span<const Field> donors,
+                           const std::shared_ptr<const TriangleMesh>& target,
+                           const TransferOptions& options, const Progress& progress);
+
 /// All groups' components.
 std::size_t component_count(std::span<const Group> groups);
-
-/// One line per component of a field that was moved.
-/// @param spread          mass added besides, or empty
-/// @param element_defect  largest |element mass - mass received|, per component
-void append_reports(const Field& donor, const Field& moved, std::span<const double> outside,
-                    std::span<const double> made, std::span<const double> spread,
-                    std::span<const double> element_defect, int threads,
-                    std::vector<FieldReport>& out);
 
 }  // namespace bezel::detail

@@ -14,6 +14,7 @@
 #include "bezel/transfer/limit.hpp"
 #include "bezel/transfer/local_bounds.hpp"
 #include "bezel/transfer/overlay_mesh.hpp"
+#include "bezel/transfer/report.hpp"
 #include "bezel/transfer/sweep.hpp"
 #include "bezel/transfer/weighted.hpp"
 
@@ -79,14 +80,22 @@ Plan make_plan(std::span<const Field> donors,
   return plan;
 }
 
-void check_bounds(const Bounds& bounds) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  if (bounds.kind != Bounds::Kind::global) return;
-  if (!(bounds.lo <= bounds.hi) || bounds.lo == infinity || bounds.hi == -infinity) {
-    throw InputError("transfer: found bounds " + fmt::format("{:.3g}", bounds.lo) + " to " +
-                     fmt::format("{:.3g}", bounds.hi) +
-                     ", expected two numbers in ascending order");
+/// The coefficients of a group's fields, one field after the other.
+std::vector<std::vector<double>> part_fields(const detail::Group& g, std::span<const Field> donors,
+                                             std::span<const std::size_t> members) {
+  const std::size_t rows = g.target_space->coefficient_count();
+  std::vector<std::vector<double>> parts;
+  std::vector<std::size_t> own;
+  for (const std::size_t i : members) {
+    own.push_back(static_cast<std::size_t>(donors[i].components()));
+    parts.emplace_back(rows * own.back());
   }
+  // Row after row for all fields, so that what the group has is read once.
+  const double* from = g.out.data();
+  for (std::size_t n = 0; n < rows; ++n)
+    for (std::size_t m = 0; m < parts.size(); from += own[m], ++m)
+      std::copy_n(from, own[m], parts[m].data() + n * own[m]);
+  return parts;
 }
 
 void check_arguments(std::span<const Field> donors,
@@ -98,7 +107,7 @@ void check_arguments(std::span<const Field> donors,
     throw InputError("transfer: degree " + std::to_string(options.degree) +
                      " is not supported, expected 0 to " + std::to_string(Space::max_degree));
   }
-  check_bounds(options.bounds);
+  detail::check_bounds(options.bounds);
   if (options.continuity == Continuity::continuous) {
     if (!options.same_basis && options.basis == Basis::physical) {
       throw InputError(
@@ -137,19 +146,29 @@ void check_arguments(std::span<const Field> donors,
 
 }  // namespace
 
-TransferResult transfer(std::span<const Field> donors,
-                        std::shared_ptr<const TriangleMesh> target_mesh,
+TransferResult transfer(std::span<const Field> donors, std::shared_ptr<const TriangleMesh> target,
                         const TransferOptions& options, const Progress& progress) {
+  const auto here = [](const detail::OverlayMesh& from, const detail::OverlayMesh& to,
+                       const detail::FrontSearch& search, std::span<detail::Group> groups,
+                       const TransferOptions& how, const Progress& done) {
+    return detail::sweep_elements(from, to, search, groups, to.spatial_order(), how, done);
+  };
+  return detail::transfer_by(here, donors, target, options, progress);
+}
+
+TransferResult detail::transfer_by(const Sweeper& sweeper, std::span<const Field> donors,
+                                   const std::shared_ptr<const TriangleMesh>& target_mesh,
+                                   const TransferOptions& options, const Progress& progress) {
   const auto start = clock::now();
   check_arguments(donors, target_mesh, options);
   if (options.weight || !options.density.empty())
-    return detail::transfer_weighted(donors, target_mesh, options, progress);
+    return detail::transfer_weighted(sweeper, donors, target_mesh, options, progress);
   const detail::OverlayMesh donor(donors.front().space().mesh(), "donor", options.threads);
   const detail::OverlayMesh target(target_mesh, "target", options.threads);
   Plan plan = make_plan(donors, target_mesh, donor, target, options);
   const detail::FrontSearch search(donor);
-  const std::vector<detail::ChunkResult> chunks = detail::sweep_elements(
-      donor, target, search, plan.groups, target.spatial_order(), options, progress);
+  const std::vector<detail::ChunkResult> chunks =
+      sweeper(donor, target, search, plan.groups, options, progress);
   detail::Swept swept = detail::balance(chunks, donor.element_area,
                                         detail::component_count(plan.groups), options.uncovered);
   const std::size_t components = swept.made.size();
@@ -209,19 +228,17 @@ TransferResult transfer(std::span<const Field> donors,
   }
 
   std::vector<std::optional<Field>> fields(donors.size());
-  std::vector<std::vector<FieldReport>> field_reports(donors.size());
+  detail::Reports reports(donors.size(), options.threads);
   std::size_t c0 = 0;
   for (std::size_t k = 0; k < plan.groups.size(); ++k) {
     const detail::Group& g = plan.groups[k];
     const auto nc = static_cast<std::size_t>(g.components);
-    const std::size_t rows = g.target_space->coefficient_count();
+    std::vector<std::vector<double>> parted = part_fields(g, donors, plan.members[k]);
     std::size_t first = 0;
-    for (const std::size_t i : plan.members[k]) {
+    for (std::size_t m = 0; m < parted.size(); ++m) {
+      const std::size_t i = plan.members[k][m];
       const auto own = static_cast<std::size_t>(donors[i].components());
-      std::vector<double> coefficients(rows * own);
-      for (std::size_t n = 0; n < rows; ++n) {
-        for (std::size_t c = 0; c < own; ++c) coefficients[n * own + c] = g.out[n * nc + first + c];
-      }
+      std::vector<double>& coefficients = parted[m];
       std::vector<double> spread_mass(own, 0.0);
       std::vector<double> spread_change(own, 0.0);
       for (std::size_t a = 0; a < added.element.size(); ++a) {
@@ -254,17 +271,17 @@ TransferResult transfer(std::span<const Field> donors,
       std::vector<double> element_defect(own, swept.max_mass_defect);
       for (std::size_t c = 0; !continuous.empty() && c < own; ++c)
         element_defect[c] = continuous[k].max_element_change[first + c];
-      detail::append_reports(donors[i], *fields[i], std::span(outside).subspan(c0 + first, own),
-                             std::span(swept.made).subspan(c0 + first, own), spread_mass,
-                             element_defect, options.threads, field_reports[i]);
+      const auto lines =
+          reports.add(i, donors[i], *fields[i], std::span(outside).subspan(c0 + first, own),
+                      std::span(swept.made).subspan(c0 + first, own), spread_mass, element_defect);
       for (std::size_t c = 0; c < own; ++c) {
-        FieldReport& line = field_reports[i][c];
+        FieldReport& line = lines[c];
         line.max_spread_change = spread_change[c];
         if (!continuous.empty()) line.mass_solve = continuous[k].solve[first + c];
         if (bounds) {
           // Both enclose the values; the limiter's is the sharper one at the bounds.
-          line.min_after = std::max(line.min_after, limited[c].range.lo);
-          line.max_after = std::min(line.max_after, limited[c].range.hi);
+          line.min_after = limited[c].range.lo;
+          line.max_after = limited[c].range.hi;
           line.bounds = limited[c].report;
         }
       }
@@ -272,10 +289,8 @@ TransferResult transfer(std::span<const Field> donors,
     }
     c0 += nc;
   }
-  for (std::size_t i = 0; i < donors.size(); ++i) {
-    transferred.fields.push_back(std::move(*fields[i]));
-    report.fields.insert(report.fields.end(), field_reports[i].begin(), field_reports[i].end());
-  }
+  report.fields = reports.finish();
+  for (std::optional<Field>& field : fields) transferred.fields.push_back(std::move(*field));
   report.seconds.total = seconds_since(start);
   return transferred;
 }

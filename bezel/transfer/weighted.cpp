@@ -5,14 +5,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "bezel/base/parallel.hpp"
 #include "bezel/numeric/sum.hpp"
 #include "bezel/transfer/element_mass.hpp"
 #include "bezel/transfer/layout.hpp"
+#include "bezel/transfer/report.hpp"
 #include "bezel/transfer/sweep.hpp"
 #include "bezel/transfer/weight.hpp"
+#include "bezel/transfer/weighted_continuous.hpp"
 
 namespace bezel::detail {
 namespace {
@@ -269,14 +272,16 @@ Field added(const Field& a, const Field& b) {
 
 }  // namespace
 
-TransferResult transfer_weighted(std::span<const Field> donors,
+TransferResult transfer_weighted(const Sweeper& sweeper, std::span<const Field> donors,
                                  const std::shared_ptr<const TriangleMesh>& target,
                                  const TransferOptions& options, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  if (!is_linear(options)) {
+  const bool continuous = options.continuity == Continuity::continuous;
+  if (options.bounds.kind != Bounds::Kind::none || options.conserve != Conserve::covered ||
+      options.keep_boundary) {
     throw InputError(
-        "transfer: weights need a discontinuous target without bounds that conserves what is "
-        "covered");
+        "transfer: weights need a target without bounds or kept boundary values that conserves "
+        "what is covered");
   }
   const Products products(donors, options);
   const auto degree_of = [&](std::size_t k) {
@@ -286,7 +291,11 @@ TransferResult transfer_weighted(std::span<const Field> donors,
   plain.weight.reset();
   plain.density.clear();
   plain.same_basis = false;
-  plain.basis = options.same_basis ? donors.front().space().basis() : options.basis;
+  plain.continuity = Continuity::discontinuous;
+  plain.mass_method = MassMethod::automatic;
+  plain.basis = continuous           ? Basis::reference
+                : options.same_basis ? donors.front().space().basis()
+                                     : options.basis;
   plain.degree = 0;
   for (std::size_t k = 0; k < donors.size(); ++k)
     plain.degree = std::max(plain.degree, degree_of(k));
@@ -296,11 +305,10 @@ TransferResult transfer_weighted(std::span<const Field> donors,
                                 weight_degree(*options.weight, target, "target", options.threads));
     weight = weight_field(*options.weight, degree, target, "target", options.threads);
   }
-  const TransferResult moved = transfer(products.fields, target, plain, progress);
+  const TransferResult moved = transfer_by(sweeper, products.fields, target, plain, progress);
 
   TransferResult result;
   result.report = moved.report;
-  result.report.fields.clear();
   std::vector<char> partial(target->element_count(), 0);
   if (options.uncovered == Uncovered::zero && products.density == Products::none) {
     for (const auto& [element, area] : moved.report.uncovered_elements)
@@ -320,7 +328,30 @@ TransferResult transfer_weighted(std::span<const Field> donors,
   if (weight) weights.push_back(&*weight);
   std::vector<std::optional<Field>> fields(donors.size());
   std::vector<Recovered> recovered(donors.size());
+  std::vector<std::vector<MassSolve>> mass_solve(donors.size());
+  // Masses with the present weights, by degree: the density's, then the others'.
+  std::vector<std::unique_ptr<WeightedContinuous>> masses(spaces.size());
+  std::vector<std::shared_ptr<const Space>> continuous_spaces(spaces.size());
+  // Where the field counts as 0 in part, a constant is no solution; but it is for a field that is
+  // carried, whose density counts as 0 there too.
+  const bool whole =
+      options.uncovered != Uncovered::zero || moved.report.uncovered_elements.empty();
+  const auto solve_continuous = [&](std::size_t k, const Field* carrier) {
+    const std::size_t p = at(degree_of(k));
+    if (!continuous_spaces[p]) continuous_spaces[p] = Space::continuous(target, degree_of(k));
+    if (!masses[p]) {
+      masses[p] = std::make_unique<WeightedContinuous>(continuous_spaces[p], weights,
+                                                       options.mass_method, options.threads);
+    }
+    auto found = (*masses[p])(moved_product(k), whole || products.carried(k) ? carrier : nullptr);
+    recovered[k].mass = std::move(found.mass);
+    recovered[k].max_mass_defect = *std::ranges::max_element(found.outcome.max_element_change);
+    mass_solve[k] = std::move(found.outcome.solve);
+    fields[k].emplace(donors[k].name(), continuous_spaces[p], std::move(found.coefficients),
+                      donors[k].components());
+  };
   const auto solve = [&](std::size_t k, const Field* carrier) {
+    if (continuous) return solve_continuous(k, carrier);
     recovered[k] =
         recover(moved_product(k), space_of(k), weights, carrier, partial, options.threads);
     fields[k].emplace(donors[k].name(), space_of(k), std::move(recovered[k].coefficients),
@@ -333,11 +364,13 @@ TransferResult transfer_weighted(std::span<const Field> donors,
     carried_density = moved_product(products.density);
     carrier = &*carried_density;
     weights.push_back(&*fields[products.density]);
+    std::ranges::fill(masses, nullptr);
   }
   for (std::size_t k = 0; k < donors.size(); ++k) {
     if (k != products.density) solve(k, carrier);
   }
 
+  detail::Reports reports(donors.size(), options.threads);
   std::size_t line = 0;  // of the inner report
   for (std::size_t k = 0; k < donors.size(); ++k) {
     const std::vector<double> size = products.size(k, options.threads);
@@ -356,17 +389,13 @@ TransferResult transfer_weighted(std::span<const Field> donors,
       out.relative_mass_defect =
           std::abs(out.mass_after - (out.mass_before - out.mass_outside + out.mass_made)) / scale;
       out.max_element_defect = recovered[k].max_mass_defect / scale;
-      const auto before = value_range(donors[k], out.component);
-      const auto after = value_range(*fields[k], out.component);
-      out.min_before = before.lo;
-      out.max_before = before.hi;
-      out.min_after = after.lo;
-      out.max_after = after.hi;
-      result.report.fields.push_back(out);
+      if (continuous) out.mass_solve = mass_solve[k][c];
+      reports.add(k, donors[k], *fields[k], std::move(out));
     }
     line += parts * size.size();
-    result.fields.push_back(std::move(*fields[k]));
   }
+  result.report.fields = reports.finish();
+  for (std::optional<Field>& field : fields) result.fields.push_back(std::move(*field));
   result.report.seconds.total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -4,13 +4,13 @@
 #include <memory>
 #include <span>
 
-#include "bezel/transfer/transfer.hpp"
+#include "bezel/transfer/sweep.hpp"
 
 namespace bezel::detail {
 
-/// transfer() with a weight or a density: the products of the fields with them are transferred, and
-/// the fields recovered element by element.
-TransferResult transfer_weighted(std::span<const Field> donors,
+/// transfer_by() with a weight or a density: the products of the fields with them are transferred,
+/// and the fields recovered element by element.
+TransferResult transfer_weighted(const Sweeper& sweeper, std::span<const Field> donors,
                                  const std::shared_ptr<const TriangleMesh>& target,
                                  const TransferOptions& options, const Progress& progress);
 

@@ -34,7 +34,7 @@ class Setup(unittest.TestCase):
         return done, calls
 
     def test_does_nothing_when_nothing_is_missing(self):
-        for level in ("build", "test", "ci"):
+        for level in ("build", "test", "ci", "mpi"):
             done, calls = self.run_script(level)
             self.assertEqual((done.returncode, done.stdout, done.stderr, calls), (0, "", "", []))
 
@@ -49,6 +49,8 @@ class Setup(unittest.TestCase):
     def test_a_level_leaves_out_what_only_the_next_needs(self):
         _, calls = self.run_script("build", missing=["libgtest-dev", "clang-14"])
         self.assertEqual(calls, [])
+        _, calls = self.run_script("ci", missing=["libopenmpi-dev"])
+        self.assertEqual(calls, [])
 
     def test_uses_sudo_when_not_root(self):
         done, calls = self.run_script("build", missing=["cmake"], root=False)
@@ -59,7 +61,7 @@ class Setup(unittest.TestCase):
     def test_unknown_level(self):
         done, calls = self.run_script("everything")
         self.assertEqual((done.returncode, calls), (2, []))
-        self.assertEqual(done.stderr, "error: found 'everything', expected build, test or ci\n")
+        self.assertEqual(done.stderr, "error: found 'everything', expected build, test, ci or mpi\n")
 
 
 if __name__ == "__main__":

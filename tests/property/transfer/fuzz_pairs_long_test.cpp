@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdlib>
 
 #include "property/transfer/fuzz_pairs.hpp"
@@ -23,8 +22,7 @@ TEST_P(ManyFuzzedPairs, NoWrongAreaGoesUnreported) {
     EXPECT_EQ(verdict.complaint, "") << verdict.kind << ", seed " << seed;
     refused += verdict.refused ? 1 : 0;
   }
-  RecordProperty("refused", refused);
-  EXPECT_LE(refused, std::max(10, pairs / 2));
+  EXPECT_EQ(refused, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, ManyFuzzedPairs, ::testing::Range(0, mesh_pair_kinds));

@@ -33,8 +33,14 @@ TEST_P(EveryDegree, HangingVertices) {
   const auto coarse = grid_mesh(2, GetParam(), 1.0, bend(0.15, -0.1));
   const auto local = locally_refined(coarse);
   ASSERT_EQ(local->element_count(), 17U);
-  expect_kept(coarse, local, 2, 2, "hanging");
-  expect_kept(grid_mesh(3, 2, 1.0, bend(-0.1, 0.1)), local, 3, 1, "hanging, others");
+  expect_kept(local, local, 1, 1, "hanging, itself");
+  expect_kept_both_ways(coarse, local, "hanging");
+  expect_kept_both_ways(grid_mesh(3, 2, 1.0, bend(-0.1, 0.1)), local, "hanging, others");
+  if (GetParam() > 3) return;
+  const auto twice = locally_refined(local);  // chains of hanging vertices
+  ASSERT_EQ(twice->element_count(), 35U);
+  expect_kept_both_ways(twice, local, "hanging, twice");
+  expect_kept_both_ways(twice, grid_mesh(3, 2, 1.0, bend(-0.1, 0.1)), "hanging twice, others");
 }
 
 TEST_P(EveryDegree, SameCurvesWrittenOtherwise) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "support/mesh_pairs.hpp"
 #include "support/meshes.hpp"
 
 namespace bezel::detail {
@@ -55,6 +56,47 @@ TEST(ElementTransfer, APieceThatIsMissingIsNoticed) {
     GivenList given;
     EXPECT_TRUE(element.process(4, {list.donors, broken, {}}, given, {}).inconsistent)
         << "without piece " << left_out;
+  }
+}
+
+// Thin elements, elements far from the origin, and edges that nearly coincide: joints are open by
+// the coincidence distance there, which must not hide a piece that is missing.
+TEST(ElementTransfer, APieceThatIsMissingIsNoticedWhereJointsAreOpen) {
+  const auto base = test::grid_mesh(2, 2, 1.0, test::bend(0.15, 0.1));
+  struct Case {
+    double flat, shear;
+    Vec2 shift;
+  };
+  for (const Case& c : {Case{1.0, 1e-13, {}}, Case{1e-6, 1e-8, {}}, Case{1e-6, 1e-3, {}},
+                        Case{1.0, 1e-9, {{3e5, -1e6}}}, Case{1.0, 0.3, {{3e5, -1e6}}}}) {
+    const auto moved = [&](double shear) {
+      return test::with_control(base, [&](const Vec2& p, std::size_t) {
+        return Vec2{{p[0] + shear * p[1], c.flat * p[1]}} + c.shift;
+      });
+    };
+    Pair pair(moved(0.0), moved(c.shear));
+    ElementTransfer element(pair.donor, pair.target, pair.search, {}, Uncovered::error);
+    int tried = 0;
+    for (std::int32_t t = 0; t < static_cast<std::int32_t>(pair.target.element_count()); ++t) {
+      OverlayList list;
+      pair.overlay.add(t, list, pair.counts);
+      GivenList given;
+      ASSERT_FALSE(element.process(t, list[0], given, {}).inconsistent) << c.flat << " " << c.shear;
+      for (std::size_t left_out = 0; left_out < list.segments.size(); ++left_out) {
+        std::vector<Segment> broken = list.segments;
+        const Segment& gone = list.segments[left_out];
+        const Part& part = gone.target.edge < 0 ? gone.source : gone.target;
+        if (std::abs(part.to - part.from) < 1e-5) continue;
+        broken.erase(broken.begin() + static_cast<std::ptrdiff_t>(left_out));
+        std::vector<std::int32_t> donors;
+        for (const Segment& s : broken)
+          if (donors.empty() || donors.back() != s.donor) donors.push_back(s.donor);
+        EXPECT_TRUE(element.process(t, {donors, {}, broken}, given, {}).inconsistent)
+            << c.flat << " " << c.shear << " without piece " << left_out << " of " << t;
+        ++tried;
+      }
+    }
+    EXPECT_GE(tried, 24);
   }
 }
 

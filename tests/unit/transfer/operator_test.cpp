@@ -291,5 +291,63 @@ TEST(TransferOperatorErrors, NameWhatIsWrong) {
                Interrupted);
 }
 
+/// Steep enough for the projection to leave the donor's range.
+Field steps(const std::shared_ptr<const Space>& space) {
+  RandomStream random("steps", 1);
+  std::vector<double> c(space->coefficient_count());
+  for (std::size_t e = 0; e < space->mesh()->element_count(); ++e) {
+    const double value = random.uniform() < 0.5 ? 0.0 : 1.0;
+    const auto n = static_cast<std::size_t>(bernstein::triangle_size(space->degree(ElementId(e))));
+    std::fill_n(c.begin() + static_cast<std::ptrdiff_t>(space->offset(ElementId(e))), n, value);
+  }
+  return Field("steps", space, std::move(c));
+}
+
+TEST(TransferOperator, KeepsBoundsAsTransferDoes) {
+  for (const Basis basis : {Basis::physical, Basis::reference}) {
+    for (const int g : {1, 3}) {
+      const auto donor = grid_mesh(6, g, 1.0, bend(0.1, 0.08));
+      const auto target = grid_mesh(5, g, 0.7, turn(0.4, 0.9));
+      const Field f = steps(Space::discontinuous(donor, 2, basis));
+      const TransferOperator op(f.space_ptr(), target);
+      const TransferResult free = op.transfer({&f, 1});
+      EXPECT_LT(free.report.fields[0].min_after, -0.05);
+      EXPECT_GT(free.report.fields[0].max_after, 1.05);
+      for (const Bounds& bounds : {Bounds::between(0.0, 1.0), Bounds::local()}) {
+        TransferOptions options;
+        options.bounds = bounds;
+        const TransferResult expected = transfer({&f, 1}, target, options);
+        const TransferResult found = op.transfer({&f, 1}, bounds);
+        const FieldReport& line = found.report.fields[0];
+        EXPECT_LT(largest_value_difference(found.fields[0], expected.fields[0]), 1e-11);
+        // Local ranges may exceed the true ones by the rounding of a composition.
+        const double over = bounds.kind == Bounds::Kind::local ? 2e-13 : 1e-15;
+        EXPECT_GE(line.min_after, -over);
+        EXPECT_LE(line.max_after, 1.0 + over);
+        EXPECT_LT(line.relative_mass_defect, 1e-14);
+        EXPECT_EQ(line.bounds.elements_limited, expected.report.fields[0].bounds.elements_limited);
+        EXPECT_GT(line.bounds.elements_limited, 0);
+        const Field applied = op.apply(f, bounds);
+        EXPECT_EQ(largest_difference(applied, found.fields[0]), 0.0);
+      }
+      // Bounds of one call are none of the next.
+      EXPECT_EQ(largest_difference(op.apply(f), free.fields[0]), 0.0);
+    }
+  }
+}
+
+TEST(TransferOperator, SaysWhatIsWrongWithBounds) {
+  const auto donor = grid_mesh(3, 1, 1.0, bend(0.0, 0.0));
+  const Field f = steps(Space::discontinuous(donor, 1, Basis::physical));
+  const TransferOperator op(f.space_ptr(), grid_mesh(3, 1, 0.5, turn(0.3, 1.0)));
+  EXPECT_THROW((void)op.apply(f, Bounds::between(1.0, 0.0)), InputError);
+  EXPECT_THROW((void)op.apply(f, Bounds::between(std::nan(""), 1.0)), InputError);
+  EXPECT_THROW((void)op.apply(f, Bounds::between(2.0, 3.0)), NumericsError);
+  TransferOptions zero;
+  zero.uncovered = Uncovered::zero;
+  const TransferOperator wide(f.space_ptr(), grid_mesh(3, 1, 1.5, turn(0.3, 1.0)), zero);
+  EXPECT_THROW((void)wide.apply(f, Bounds::between(0.5, 2.0)), InputError);
+}
+
 }  // namespace
 }  // namespace bezel

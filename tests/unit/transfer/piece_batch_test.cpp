@@ -57,7 +57,7 @@ struct Cut {
               affine_frame({Vec2{{0.5, 0.0}}, Vec2{{1.6, 0.4}}, Vec2{{0.2, 1.3}}})};
   }
   void sum(int degree, int moments) {
-    region_sums(PieceTable(degree, moments), moments, place, pieces, 2, batch);
+    region_sums(PieceTable(degree, moments), moments, Vec2{{0.6, 0.5}}, place, pieces, 2, batch);
   }
   TargetPlace place;
   std::vector<BoundaryPiece> pieces;
@@ -147,17 +147,26 @@ TEST(MomentBatch, EqualsQuadratureOnTheRegions) {
 
 TEST(MomentBatch, RegionsCloseAndAddUp) {
   for (int g = 1; g <= max_batch_degree; ++g) {
+    std::array<double, 2> first{};
     for (const int moments : {0, 2, 4, 6}) {
       Cut cut(g);
       cut.sum(g, moments);
       const double whole = 0.5 * cross(Vec2{{1.1, 0.2}}, Vec2{{0.2, 1.1}});
       const double* corner = cut.batch.region(0);
       const double* rest = cut.batch.region(1);
-      EXPECT_NEAR(corner[0] * cut.place.area, whole * 0.3 * 0.4, 1e-15);
-      EXPECT_NEAR(rest[0] * cut.place.area, whole * (1.0 - 0.3 * 0.4), 1e-15);
-      const auto open = static_cast<std::size_t>(bernstein::triangle_size(moments));
-      for (const double* region : {corner, rest})
-        EXPECT_NEAR(std::hypot(region[open], region[open + 1]), 0.0, 1e-15);
+      const double corner_area = corner[cut.batch.area] * cut.batch.area_unit;
+      const double rest_area = rest[cut.batch.area] * cut.batch.area_unit;
+      EXPECT_NEAR(corner_area, whole * 0.3 * 0.4, 1e-15);
+      EXPECT_NEAR(rest_area, whole * (1.0 - 0.3 * 0.4), 1e-15);
+      EXPECT_NEAR(corner[0] * cut.place.area, corner_area, 1e-15);
+      EXPECT_NEAR(rest[0] * cut.place.area, rest_area, 1e-15);
+      for (const double* region : {corner, rest}) {
+        EXPECT_NEAR(std::hypot(region[cut.batch.open], region[cut.batch.open + 1]), 0.0, 1e-15);
+      }
+      // The same bits whatever the degree of the moments.
+      if (moments == 0) first = {corner_area, rest_area};
+      EXPECT_EQ(corner_area, first[0]);
+      EXPECT_EQ(rest_area, first[1]);
     }
   }
 }

@@ -1,0 +1,325 @@
+#include "bezel/transfer/distributed.hpp"
+
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include "bezel/base/error.hpp"
+
+#ifdef BEZEL_WITH_MPI
+// The C interface is all that is used.
+#define OMPI_SKIP_MPICXX 1
+#define MPICH_SKIP_MPICXX 1
+#include <mpi.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <new>
+#include <thread>
+
+#include "bezel/transfer/message.hpp"
+#include "bezel/transfer/share.hpp"
+#endif
+
+namespace bezel {
+namespace {
+
+int number_in_environment(const char* name) {
+  const char* text = std::getenv(name);
+  if (text == nullptr) return -1;
+  char* end = nullptr;
+  const long value = std::strtol(text, &end, 10);
+  return end != text && *end == '\0' && value >= 0 && value < (1L << 30) ? static_cast<int>(value)
+                                                                         : -1;
+}
+
+}  // namespace
+
+Launch launch() {
+  constexpr const char* names[][2] = {{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
+                                      {"PMI_RANK", "PMI_SIZE"}};
+  for (const auto& [rank, size] : names) {
+    const Launch found{number_in_environment(rank), number_in_environment(size)};
+    if (found.rank >= 0 && found.size > found.rank) return found;
+  }
+  return {};
+}
+
+#ifdef BEZEL_WITH_MPI
+
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+constexpr int size_tag = 1, bytes_tag = 2;
+/// MPI counts bytes in an int.
+constexpr std::size_t largest_piece = std::size_t{1} << 30;
+
+/// What a message to a serving process asks for.
+enum class Order : std::uint8_t { work, end };
+
+/// How a serving process fared.
+enum class Outcome : std::uint8_t { done, bad_input, gave_up, no_memory, other };
+
+void send(int to, std::span<const std::byte> bytes) {
+  auto size = static_cast<std::uint64_t>(bytes.size());
+  MPI_Send(&size, 1, MPI_UINT64_T, to, size_tag, MPI_COMM_WORLD);
+  for (std::size_t at = 0; at < bytes.size(); at += largest_piece) {
+    const std::size_t piece = std::min(largest_piece, bytes.size() - at);
+    MPI_Send(bytes.data() + at, static_cast<int>(piece), MPI_BYTE, to, bytes_tag, MPI_COMM_WORLD);
+  }
+}
+
+/// Waits without keeping a core busy: rank 0 reads files, and others work, meanwhile.
+Bytes receive(int from) {
+  int there = 0;
+  for (auto pause = std::chrono::microseconds(10);;) {
+    MPI_Iprobe(from, size_tag, MPI_COMM_WORLD, &there, MPI_STATUS_IGNORE);
+    if (there != 0) break;
+    std::this_thread::sleep_for(pause);
+    pause = std::min(2 * pause, std::chrono::microseconds(1000));
+  }
+  std::uint64_t size = 0;
+  MPI_Recv(&size, 1, MPI_UINT64_T, from, size_tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  Bytes bytes(static_cast<std::size_t>(size));
+  for (std::size_t at = 0; at < bytes.size(); at += largest_piece) {
+    const std::size_t piece = std::min(largest_piece, bytes.size() - at);
+    MPI_Recv(bytes.data() + at, static_cast<int>(piece), MPI_BYTE, from, bytes_tag, MPI_COMM_WORLD,
+             MPI_STATUS_IGNORE);
+  }
+  return bytes;
+}
+
+Bytes failure(Outcome outcome, const std::string& message) {
+  detail::MessageWriter out;
+  out.value(outcome);
+  out.text(message);
+  return out.take();
+}
+
+/// What rank 0 throws for it.
+[[noreturn]] void rethrow(Outcome outcome, const std::string& message) {
+  switch (outcome) {
+    case Outcome::bad_input:
+      throw InputError(message);
+    case Outcome::gave_up:
+      throw NumericsError(message);
+    case Outcome::no_memory:
+      throw std::bad_alloc();
+    default:
+      throw InternalError(message);
+  }
+}
+
+/// The answer to an order to work.
+Bytes answer(detail::MessageReader& in, int threads) {
+  try {
+    detail::MessageWriter results;
+    const ShareReport work = detail::work_on(in, threads, results);
+    detail::MessageWriter out;
+    out.value(Outcome::done);
+    out.value(work);
+    out.list(results.take());
+    return out.take();
+  } catch (const InputError& error) {
+    return failure(Outcome::bad_input, error.what());
+  } catch (const NumericsError& error) {
+    return failure(Outcome::gave_up, error.what());
+  } catch (const std::bad_alloc&) {
+    return failure(Outcome::no_memory, "");
+  } catch (const std::exception& error) {
+    return failure(Outcome::other, error.what());
+  }
+}
+
+}  // namespace
+
+bool has_mpi() {
+  return true;
+}
+
+struct Processes::Impl {
+  bool started = false;
+  int rank = 0, size = 1;
+  bool served = false;
+  std::vector<ShareReport> shares;
+  double alone = 0;
+
+  std::vector<detail::ChunkResult> sweep(const detail::OverlayMesh& donor,
+                                         const detail::OverlayMesh& target,
+                                         const detail::FrontSearch& search,
+                                         std::span<detail::Group> groups,
+                                         const TransferOptions& options, const Progress& progress);
+};
+
+Processes::Processes() : impl_(std::make_unique<Impl>()) {
+  int running = 0;
+  MPI_Initialized(&running);
+  if (running == 0) {
+    // Only the thread that made the object calls MPI.
+    int level = 0;
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &level);
+    impl_->started = true;
+  }
+  MPI_Comm_rank(MPI_COMM_WORLD, &impl_->rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &impl_->size);
+}
+
+Processes::~Processes() {
+  if (impl_->rank == 0) {
+    constexpr std::byte end{static_cast<std::uint8_t>(Order::end)};
+    for (int r = 1; r < impl_->size; ++r) send(r, {&end, 1});
+  } else if (!impl_->served) {
+    // Rank 0 would wait for this process for ever.
+    MPI_Abort(MPI_COMM_WORLD, 70);
+  }
+  if (impl_->started) MPI_Finalize();
+}
+
+int Processes::rank() const {
+  return impl_->rank;
+}
+int Processes::size() const {
+  return impl_->size;
+}
+const std::vector<ShareReport>& Processes::shares() const {
+  return impl_->shares;
+}
+
+double Processes::alone_cpu_seconds() const {
+  return impl_->alone;
+}
+
+void Processes::serve(int threads) {
+  if (impl_->rank == 0) throw InputError("transfer: rank 0 serves no other process");
+  while (true) {
+    const Bytes bytes = receive(0);
+    detail::MessageReader in(bytes);
+    if (in.value<Order>() == Order::end) break;
+    send(0, answer(in, threads));
+  }
+  impl_->served = true;
+}
+
+std::vector<detail::ChunkResult> Processes::Impl::sweep(const detail::OverlayMesh& donor,
+                                                        const detail::OverlayMesh& target,
+                                                        const detail::FrontSearch& search,
+                                                        std::span<detail::Group> groups,
+                                                        const TransferOptions& options,
+                                                        const Progress& progress) {
+  const auto count = static_cast<std::size_t>(size);
+  const std::vector<detail::Share> split =
+      detail::split_work(donor, target, search, count, options.threads);
+  // A transfer may sweep more than once: what is measured adds up.
+  for (std::size_t r = 1; r < count; ++r) {
+    if (split[r].own.empty()) continue;
+    detail::MessageWriter out;
+    out.value(Order::work);
+    detail::write_share(split[r], donor, target, search, groups, options, out);
+    const Bytes bytes = out.take();
+    shares[r].bytes_in += static_cast<std::int64_t>(bytes.size());
+    send(static_cast<int>(r), bytes);
+  }
+  std::vector<detail::ChunkResult> chunks(split.back().first_chunk + split.back().chunk_count);
+  // The others' answers are taken even when something went wrong: they would wait with them.
+  std::exception_ptr error;
+  TransferOptions own_options = options;
+  if (own_options.threads == 0) own_options.threads = 1;
+  try {
+    const detail::Share& own = split[0];
+    const detail::Stopwatch watch;
+    std::vector<detail::ChunkResult> here =
+        detail::sweep_elements(donor, target, search, groups, own.own, own_options, progress);
+    ShareReport& report = shares[0];
+    report.targets += static_cast<std::int64_t>(own.own.size());
+    report.donors += static_cast<std::int64_t>(own.donors.size());
+    for (const detail::ChunkResult& chunk : here) report.pairs += chunk.counts.pairs;
+    report.seconds += watch.seconds();
+    report.cpu_seconds += watch.cpu_seconds();
+    std::move(here.begin(), here.end(), chunks.begin());
+  } catch (...) {
+    error = std::current_exception();
+  }
+  for (std::size_t r = 1; r < count; ++r) {
+    if (split[r].own.empty()) continue;
+    try {
+      const Bytes bytes = receive(static_cast<int>(r));
+      detail::MessageReader in(bytes);
+      const auto outcome = in.value<Outcome>();
+      if (error) continue;
+      if (outcome != Outcome::done) rethrow(outcome, in.text());
+      const auto report = in.value<ShareReport>();
+      const Bytes results = in.list<std::byte>();
+      detail::MessageReader reader(results);
+      detail::read_results(split[r], reader, groups, chunks);
+      ShareReport& sum = shares[r];
+      sum.targets += report.targets;
+      sum.donors += report.donors;
+      sum.pairs += report.pairs;
+      sum.bytes_out += static_cast<std::int64_t>(bytes.size());
+      sum.seconds += report.seconds;
+      sum.cpu_seconds += report.cpu_seconds;
+    } catch (...) {
+      if (!error) error = std::current_exception();
+    }
+  }
+  if (error) std::rethrow_exception(error);
+  return chunks;
+}
+
+TransferResult Processes::transfer(std::span<const Field> donors,
+                                   std::shared_ptr<const TriangleMesh> target,
+                                   const TransferOptions& options, const Progress& progress) {
+  if (impl_->rank != 0) throw InputError("transfer: rank 0 moves the fields, the others serve it");
+  if (options.mass_method == MassMethod::petsc && impl_->size > 1) {
+    throw InputError(
+        "transfer: PETSc solves mass systems in one process only, expected another mass method");
+  }
+  impl_->shares.assign(static_cast<std::size_t>(impl_->size), {});
+  const auto sweep = [&](const detail::OverlayMesh& from, const detail::OverlayMesh& to,
+                         const detail::FrontSearch& search, std::span<detail::Group> groups,
+                         const TransferOptions& how, const Progress& done) {
+    return impl_->sweep(from, to, search, groups, how, done);
+  };
+  const detail::Stopwatch watch;
+  TransferResult result = detail::transfer_by(sweep, donors, target, options, progress);
+  impl_->alone = watch.cpu_seconds() - impl_->shares[0].cpu_seconds;
+  return result;
+}
+
+#else
+
+bool has_mpi() {
+  return false;
+}
+
+struct Processes::Impl {
+  std::vector<ShareReport> shares;
+};
+
+Processes::Processes() {
+  throw InputError("this build of bezel has no MPI (BEZEL_WITH_MPI), expected one process");
+}
+Processes::~Processes() = default;
+int Processes::rank() const {
+  return 0;
+}
+int Processes::size() const {
+  return 1;
+}
+void Processes::serve(int) {}
+TransferResult Processes::transfer(std::span<const Field>, std::shared_ptr<const TriangleMesh>,
+                                   const TransferOptions&, const Progress&) {
+  return {};
+}
+const std::vector<ShareReport>& Processes::shares() const {
+  return impl_->shares;
+}
+double Processes::alone_cpu_seconds() const {
+  return 0;
+}
+
+#endif
+
+}  // namespace bezel

@@ -1,0 +1,56 @@
+#pragma once
+// Internal: masses and ranges of many fields for the report.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "bezel/field/element_range.hpp"
+#include "bezel/field/integrals.hpp"
+#include "bezel/transfer/transfer.hpp"
+
+namespace bezel::detail {
+
+/// The lines of a report, one per component of a field that was moved. What depends on the elements
+/// only (integrals of basis functions, where elements lie in their frames) is done once per space,
+/// and ranges are sought by all threads at the end.
+class Reports {
+ public:
+  /// @param fields  how many donor fields there are: their lines come in that order
+  Reports(std::size_t fields, int threads) : lines_(fields), threads_(threads) {}
+
+  /// Field number `place`; donor and moved must stay where they are until finish().
+  /// @param spread          mass added besides, or empty
+  /// @param element_defect  largest |element mass - mass received|, per component
+  /// @return the lines, to be completed
+  std::span<FieldReport> add(std::size_t place, const Field& donor, const Field& moved,
+                             std::span<const double> outside, std::span<const double> made,
+                             std::span<const double> spread,
+                             std::span<const double> element_defect);
+  /// A line whose masses are known.
+  void add(std::size_t place, const Field& donor, const Field& moved, FieldReport line);
+
+  /// All lines, with their ranges: the narrower of what add()'s caller set and what is found.
+  std::vector<FieldReport> finish();
+
+ private:
+  struct Measures {
+    std::shared_ptr<const Space> space;
+    std::vector<double> basis_integrals;
+    std::unique_ptr<field_detail::AbsIntegral> abs_integral;
+    std::unique_ptr<ValueRanges> ranges;
+  };
+  struct Sought {
+    const Field* donor;
+    const Field* moved;
+    std::size_t place, line;
+  };
+  Measures& measures(const Field& field);
+
+  std::vector<std::vector<FieldReport>> lines_;
+  std::vector<Sought> sought_;
+  std::vector<std::unique_ptr<Measures>> measures_;
+  int threads_;
+};
+
+}  // namespace bezel::detail

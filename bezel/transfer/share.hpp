@@ -1,0 +1,69 @@
+#pragma once
+// Internal: a transfer split among processes: which elements each works on, what it must know of
+// the meshes and fields, and what it sends back.
+//
+// A share is a run of whole chunks of OverlayMesh::spatial_order(). Its parts of the two meshes
+// number elements and nodes in the order of the whole meshes, and hold both elements of every edge
+// that matters: of the target the edges of own elements, of the donor those that meet one. So these
+// edges have the order, the directions and the sides that they have in the whole, and all sums run
+// in the same order, to the same bits.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bezel/transfer/distributed.hpp"
+#include "bezel/transfer/group.hpp"
+#include "bezel/transfer/message.hpp"
+#include "bezel/transfer/overlay_mesh.hpp"
+#include "bezel/transfer/sweep.hpp"
+
+namespace bezel::detail {
+
+/// What one process works on; numbers are those of the whole meshes.
+struct Share {
+  std::size_t first_chunk = 0, chunk_count = 0;
+  std::vector<std::int32_t> own;      ///< target elements, in the order of the chunks
+  std::vector<std::int32_t> targets;  ///< ascending: own and their neighbours
+  std::vector<std::int32_t> donors;   ///< ascending: all that may meet, or continue a field to, own
+                                      ///< elements
+};
+
+/// Runs of chunks with about the same work: as many candidates for pairs, by their boxes. Some are
+/// empty when there are more shares than chunks.
+///
+/// A donor element may matter to a target element when their boxes meet, or when it can be the
+/// nearest one to a point of the target element's box: when it is no farther from the box than
+/// some donor corner is from the box's farthest point.
+/// @param count  at least 1; of the shares
+/// @cost   two queries of the donor's tree per target element
+std::vector<Share> split_work(const OverlayMesh& donor, const OverlayMesh& target,
+                              const FrontSearch& search, std::size_t count, int threads);
+
+/// Writes all that a process needs to work on a share.
+void write_share(const Share& share, const OverlayMesh& donor, const OverlayMesh& target,
+                 const FrontSearch& search, std::span<const Group> groups,
+                 const TransferOptions& options, MessageWriter& out);
+
+/// Wall and processor time (of all threads) since it was made.
+class Stopwatch {
+ public:
+  Stopwatch();
+  double seconds() const;
+  double cpu_seconds() const;
+
+ private:
+  double wall_start_, cpu_start_;
+};
+
+/// Reads a share, works on it, and writes chunks and coefficients with the whole's numbers.
+/// @return all but the bytes
+/// @throws as sweep_elements()
+ShareReport work_on(MessageReader& in, int threads, MessageWriter& out);
+
+/// Puts the chunks where they belong among all, and the coefficients into the groups.
+void read_results(const Share& share, MessageReader& in, std::span<Group> groups,
+                  std::span<ChunkResult> chunks);
+
+}  // namespace bezel::detail

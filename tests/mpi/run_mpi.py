@@ -1,0 +1,167 @@
+#!/usr/bin/env python3
+"""Transfers by 1 to 4 processes beside the same transfer by one without MPI: all output files have the same bytes.
+
+usage: run_mpi.py MPIEXEC NUMPROC_FLAG BEZEL NAME
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+PROCESSES = (1, 2, 3, 4)
+
+# name: commands that make donor.bzl and target.bzl, options of the transfer
+CASES = {
+    "straight": (["mesh square --width 2 --size 0.05 -o square.bzl",
+                  "sample square.bzl -f u=sin(3*x)+y^2 -f flow=-y;x --degree 1 -o donor.bzl",
+                  "mesh disc --radius 0.9 --size 0.04 --seed 2 -o target.bzl"], ""),
+    "curved": (["mesh square --width 2 --size 0.1 --degree 3 -o square.bzl",
+                "sample square.bzl -f u=sin(3*x)+y^2 -f flow=-y;x --degree 3 --basis physical -o donor.bzl",
+                "mesh disc --radius 0.9 --size 0.06 --degree 2 --seed 2 -o target.bzl"],
+               "--basis reference --degree 2"),
+    "bounds": (["mesh square --width 2 --size 0.1 --degree 2 -o square.bzl",
+                "sample square.bzl -f u=(x+abs(x))/(2*abs(x)) --degree 0 -o donor.bzl",
+                "mesh disc --radius 0.9 --size 0.06 --degree 2 --seed 2 -o target.bzl"], "--degree 2 --bounds local"),
+    "extend": (["mesh disc --radius 0.5 --size 0.05 --degree 2 -o disc.bzl",
+                "sample disc.bzl -f u=exp(x)*y --degree 2 -o donor.bzl",
+                "mesh square --width 2 --size 0.06 --seed 2 -o target.bzl"], "--uncovered extend --conserve total"),
+    "continuous": (["mesh square --width 2 --size 0.1 --degree 2 -o square.bzl",
+                    "sample square.bzl -f u=sin(3*x)+y^2 --degree 2 --continuity cg -o donor.bzl",
+                    "mesh disc --radius 0.9 --size 0.06 --degree 2 --seed 2 -o target.bzl"], "--continuity cg"),
+    "weight": (["mesh rectangle --width 2 --height 2 --center 1,0 --size 0.08 --degree 2 -o square.bzl",
+                "sample square.bzl -f u=sin(3*x)+y^2 --degree 2 -o donor.bzl",
+                "mesh disc --radius 0.9 --center 1,0 --size 0.06 --degree 2 --seed 2 -o target.bzl"], "--weight x"),
+}
+
+
+class Failure(Exception):
+    pass
+
+
+def expect(condition, what):
+    if not condition:
+        raise Failure(what)
+
+
+class Folder:
+    def __init__(self, path, mpiexec, flag, bezel):
+        self.path, self.mpiexec, self.flag, self.bezel = path, mpiexec, flag, bezel
+
+    def run(self, words, processes=None):
+        launcher = [] if processes is None else [self.mpiexec, self.flag, str(processes)]
+        return subprocess.run(launcher + [self.bezel] + words.split(), cwd=self.path, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=250)
+
+    def must(self, words, processes=None):
+        done = self.run(words, processes)
+        expect(done.returncode == 0, f"'{words}' by {processes}: exit {done.returncode}: {done.stderr}")
+        return done
+
+    def bytes_of(self, name):
+        with open(os.path.join(self.path, name), "rb") as f:
+            return f.read()
+
+    def json_of(self, name):
+        return json.loads(self.bytes_of(name))
+
+
+def without_times(report):
+    return {k: v for k, v in report.items() if k not in ("seconds", "output", "processes")}
+
+
+def compare(folder, commands, options):
+    for command in commands:
+        folder.must(command)
+    folder.must(f"--threads 1 transfer donor.bzl target.bzl {options} -o one.bzl --report one.json")
+    one = folder.json_of("one.json")
+    for n in PROCESSES:
+        folder.must(f"transfer donor.bzl target.bzl {options} -o many.bzl --report many.json", n)
+        expect(folder.bytes_of("one.bzl") == folder.bytes_of("many.bzl"), f"{n} processes: other bytes")
+        many = folder.json_of("many.json")
+        expect(without_times(one) == without_times(many), f"{n} processes: another report")
+        if n == 1:
+            expect("processes" not in many, "one process reports several")
+            continue
+        shares = many["processes"]["shares"]
+        expect(len(shares) == n and all(s["targets"] > 0 for s in shares), f"{n} processes: {shares}")
+        expect(sum(s["pairs"] for s in shares) == many["pairs"], f"{n} processes: pairs of shares")
+        expect(many["processes"]["alone_cpu_seconds"] > 0, f"{n} processes: no time alone")
+        expect(all(s["bytes_in"] > 0 and s["bytes_out"] > 0 for s in shares[1:]), f"{n} processes: no bytes")
+
+
+def tiny_last_triangle(path):
+    """A quadratic mesh whose last triangle along the curve is too small for the numbers of its mass matrix."""
+    n = 20
+    nodes, triangles = [], []
+    for j in range(2 * n + 1):
+        for i in range(2 * n + 1):
+            nodes.append((-3 + i / n, -3 + j / n))
+    at = lambda i, j: j * (2 * n + 1) + i + 1
+    for j in range(0, 2 * n, 2):
+        for i in range(0, 2 * n, 2):
+            triangles.append([at(i, j), at(i + 2, j), at(i, j + 2), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)])
+            triangles.append([at(i + 2, j), at(i + 2, j + 2), at(i, j + 2), at(i + 2, j + 1), at(i + 1, j + 2),
+                              at(i + 1, j + 1)])
+    tiny = 1e-165
+    first = len(nodes) + 1
+    nodes += [(0, 0), (2 * tiny, 0), (0, 2 * tiny), (tiny, 0), (1.2 * tiny, 1.2 * tiny), (0, tiny)]
+    triangles.append(list(range(first, first + 6)))
+    with open(path, "w", encoding="ascii") as f:
+        f.write(f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{len(nodes)}\n")
+        for k, (x, y) in enumerate(nodes):
+            f.write(f"{k + 1} {x!r} {y!r} 0\n")
+        f.write(f"$EndNodes\n$Elements\n{len(triangles)}\n")
+        for k, t in enumerate(triangles):
+            f.write(f"{k + 1} 9 2 1 1 {' '.join(map(str, t))}\n")
+        f.write("$EndElements\n")
+
+
+def errors(folder):
+    """One message of ours, the exit code of a single process, and no file, whatever process met the error."""
+    folder.must("mesh square --width 12 --size 1 --center 0.1,0.2 -o square.bzl")
+    folder.must("sample square.bzl -f u=x --degree 1 -o donor.bzl")
+    folder.must("mesh disc --radius 30 --size 5 -o large.bzl")
+    tiny_last_triangle(os.path.join(folder.path, "tiny.msh"))
+    before = sorted(os.listdir(folder.path))
+    for words, code in (("transfer donor.bzl tiny.msh -o out.bzl", 4),
+                        ("transfer donor.bzl large.bzl -o out.bzl", 3),
+                        ("transfer donor.bzl none.bzl -o out.bzl", 3),
+                        ("transfer donor.bzl large.bzl --degree 77 -o out.bzl", 2)):
+        one = folder.run(words)
+        expect(one.returncode == code, f"'{words}': exit {one.returncode}: {one.stderr}")
+        for n in (2, 4):
+            many = folder.run(words, n)
+            ours = [line for line in many.stderr.splitlines() if line.startswith("error: ")]
+            expect(ours == one.stderr.splitlines(), f"'{words}' by {n}: {many.stderr} instead of {one.stderr}")
+            expect(many.returncode == code, f"'{words}' by {n}: exit {many.returncode}")
+            expect(many.stdout == "", f"'{words}' by {n}: {many.stdout}")
+            expect(sorted(os.listdir(folder.path)) == before, f"'{words}' by {n}: left files")
+    for words, message in (("info donor.bzl", "error: info runs as one process, found 2: start it without mpirun"),
+                           ("transfer donor.bzl tiny.msh -o out.bzl --matrix m.mtx",
+                            "error: --matrix: by one process only; see 'bezel transfer --help'"),
+                           ("transfer steps.pvd tiny.msh -o out.pvd",
+                            "error: a time series is moved by one process: start it without mpirun; see "
+                            "'bezel transfer --help'")):
+        many = folder.run(words, 2)
+        ours = [line for line in many.stderr.splitlines() if line.startswith("error: ")]
+        expect(ours == [message] and many.returncode == 2, f"'{words}': exit {many.returncode}: {many.stderr}")
+        expect(sorted(os.listdir(folder.path)) == before, f"'{words}': left files")
+
+
+def main():
+    mpiexec, flag, bezel, name = sys.argv[1:]
+    with tempfile.TemporaryDirectory() as path:
+        folder = Folder(path, mpiexec, flag, bezel)
+        try:
+            if name == "errors":
+                errors(folder)
+            else:
+                compare(folder, *CASES[name])
+        except Failure as failure:
+            sys.exit(f"{name}: {failure}")
+
+
+if __name__ == "__main__":
+    main()
