@@ -18,6 +18,8 @@ constexpr int piece_degree = 5;
 /// Elements lie in their frames up to the rounding of barycentric coordinates.
 constexpr double outside = -1e-12;
 
+constexpr double own_frame = 0x1p-50;
+
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
@@ -72,6 +74,16 @@ void to_frame(const Frame& frame, std::span<double> x, std::span<double> y) {
     x[q] = 1.0 / 3.0 + (frame.gradient[1].x() * rx + frame.gradient[1].y() * ry);
     y[q] = 1.0 / 3.0 + (frame.gradient[2].x() * rx + frame.gradient[2].y() * ry);
   }
+}
+
+/// The straight triangle's own barycentrics, to the last bits.
+bool is_own_frame(const Frame& frame, std::span<const Vec2> corner) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Lambda l = frame.lambda(corner[k]);
+    for (std::size_t i = 0; i < 3; ++i)
+      if (!(std::abs(l[i] - (i == k ? 1.0 : 0.0)) <= own_frame)) return false;
+  }
+  return true;
 }
 
 /// The rule on the pieces of the reference triangle.
@@ -198,6 +210,7 @@ MapRule::MapRule(int map_degree, const TriangleRule& rule)
 std::vector<double> basis_integrals(const Space& space, int threads) {
   const TriangleMesh& mesh = *space.mesh();
   const bool physical = space.basis() == Basis::physical;
+  const bool straight = mesh.degree() == 1;
   std::vector<double> out(space.coefficient_count());
   std::vector<MapRule> rules(at(Space::max_degree) + 1);
   std::vector<std::vector<double>> factors(rules.size());
@@ -210,6 +223,17 @@ std::vector<double> basis_integrals(const Space& space, int threads) {
     for (std::size_t e = from; e < to; ++e) {
       const ElementId id(e);
       const int p = space.degree(id);
+      if (straight) {
+        // All functions of a triangle's own barycentrics have one integral.
+        const ElementMap map(mesh, id);
+        const std::span<const Vec2> c = map.control();
+        if (!physical || is_own_frame(space.frame(id), c)) {
+          const auto n = at(bernstein::triangle_size(p));
+          const double each = 0.5 * cross(c[1] - c[0], c[2] - c[0]) / static_cast<double>(n);
+          std::fill_n(out.data() + space.offset(id), n, each);
+          continue;
+        }
+      }
       const MapRule& rule = rules[at(p)];
       const std::size_t points = rule.map.size();
       x.resize(points);

@@ -68,6 +68,9 @@ Score<dim> measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const S
       score.e[c][a] = f.e.c[c];
       score.tangent[c][a] = f.tangent.c[c];
     }
+    double forwards = 0.0;
+    for (std::size_t c = 0; c < dim; ++c) forwards += slope[c][a] * f.tangent.c[c];
+    if (!(forwards > 0.0)) score.turns = true;
     const double distance_squared = dot(f.e, f.e);
     sum += rung.weight[a] * speed * distance_squared;
     length += rung.weight[a] * speed;
@@ -78,18 +81,25 @@ Score<dim> measure(const Problem<dim>& problem, const Nodes<dim>& nodes, const S
       score.far_xi = rung.xi[a];
     }
   }
-  // The least speed lies between points: the vertex of the parabola in the angle through three.
-  double vertex = double(slowest) + 0.5;
+  constexpr double least_speed = 1e-3, least_length = 0.25;
+  // The least speed lies between points: the vertex of the parabola in the angle through three, and
+  // its value by that through their squares, since |p'|^2 is smooth.
+  double vertex = double(slowest) + 0.5, least_squared = score.speed[slowest];
+  least_squared *= least_squared;
   if (slowest > 0 && slowest + 1 < std::size_t(rung.m)) {
     const double* v = score.speed.data() + slowest;
     const double bend = v[-1] - 2.0 * v[0] + v[1];
     if (bend > 0.0) vertex += 0.5 * (v[-1] - v[1]) / bend;
+    const double rise = v[1] * v[1] - v[-1] * v[-1];
+    const double curvature = v[-1] * v[-1] - 2.0 * least_squared + v[1] * v[1];
+    if (curvature > 0.0) least_squared -= rise * rise / (8.0 * curvature);
   }
   score.slow_xi = -std::cos(vertex * std::numbers::pi / rung.m);
   score.d2 = std::isfinite(sum) ? std::sqrt(sum) : HUGE_VAL;
   score.min_speed = score.speed[slowest] / (0.5 * problem.length);
+  score.slow = score.turns ||
+               !(std::sqrt(std::max(least_squared, 0.0)) >= least_speed * 0.5 * problem.length);
   // An interpolant shrunk to where a closed curve starts would be nearest to it.
-  constexpr double least_speed = 1e-3, least_length = 0.25;
   score.length = length / problem.length;
   score.valid = nodes.ordered() && score.min_speed >= least_speed && score.length >= least_length &&
                 std::isfinite(sum);

@@ -96,10 +96,10 @@ class CurveInterpolator {
   /// @throws   InputError when degree is out of range
   /// @accuracy standard, chord, arc_length: to rounding. equal_tangent: residual <= 1e-10. The
   ///           others are the best of a search, no proven minimum
-  /// @cost     degrees 10 and 15: equal_tangent 20 and 50 us on smooth curves that are resolved,
-  ///           best 0.2 to 1.5 ms, on curves of low regularity up to 40 ms at degree 30, for a
-  ///           curve that takes 20 ns an evaluation. Bounded: some 3000 Newton and as many
-  ///           least-squares steps
+  /// @cost     degrees 10 and 15: equal_tangent 15 and 40 us on smooth curves that are resolved,
+  ///           best 20 to 60 us; 0.5 ms where it has to search, on curves of low regularity up to
+  ///           10 ms (50 ms where it never gets exact), for a curve that takes 20 ns an evaluation.
+  ///           Bounded: some 3000 Newton and as many least-squares steps
   /// @limits   one smooth part: breakpoints count for the length only (interpolate_pieces splits
   ///           there). Equal tangent in space is a least-squares solution, its residual not zero
   /// @source   [bjontegaard2009]; docs/methods/curves.md

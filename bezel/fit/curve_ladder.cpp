@@ -5,10 +5,10 @@ namespace {
 
 // Below this fraction of the length a distance is rounding error.
 constexpr double floor_of_length = 4e-15;
-// Nodes that no crowded start has found and as near to the curve as this are taken when their speed
-// is more even: crowding buys the last digit with a slow, uneven interpolant, and maps of regions
-// by the curve suffer.
-constexpr double nearly_floor = 3e-14;
+// Nodes of any degree on the way as near to the curve as this are taken when their speed is more
+// even: crowding buys the last digit with a slow, uneven interpolant, and maps of regions by the
+// curve suffer.
+constexpr double nearly_floor = 4.2e-14;
 // A degree whose distance falls by this factor needs no closer look; the last degree, by the
 // second.
 constexpr double enough = 0.3, enough_at_last = 0.15;
@@ -29,11 +29,23 @@ bool within(const Problem<dim>& problem, const Score<dim>& score, double fractio
   return score.valid && score.d2 < fraction * problem.length;
 }
 
-// Whether to take nodes of the chain without crowded starts instead of others.
+// Whether to take nodes that are nearly exact instead of others.
 template <int dim>
 bool more_even(const Problem<dim>& problem, const Found<dim>& plain, const Found<dim>& other) {
   return within(problem, plain.score, nearly_floor) &&
          plain.score.min_speed > 1.1 * other.score.min_speed;
+}
+
+// Nodes instead of the best, and of the best root if they are one, where they are more even.
+template <int dim>
+void prefer_even(const Problem<dim>& problem, const Nodes<dim>& nodes, Found<dim>& best,
+                 Found<dim>& root) {
+  constexpr double is_root = 1e-10;
+  Found<dim> found{nodes, measure(problem, nodes), CurveKind::orthogonal_distance};
+  const bool solved = nodes.ordered() && tangent_residual(problem, nodes) <= is_root;
+  if (solved) found.kind = CurveKind::equal_tangent;
+  if (more_even(problem, found, best)) best = found;
+  if (solved && more_even(problem, found, root)) root = found;
 }
 
 // Nodes of degree `next.n` from those of a lower degree: feet of the points of its interpolant.
@@ -157,7 +169,7 @@ class Level {
   Level(const Problem<dim>& problem, int degree, Effort& effort)
       : problem_(problem), degree_(degree), effort_(effort) {}
   Found<dim> best, root;
-  Found<dim> plain, plain_root;  // the best of those offered before plain_over
+  Found<dim> plain;  // the best of those offered before plain_over
   bool plain_over = false;
 
   Score<dim> offer(const Nodes<dim>& nodes, bool is_root) {
@@ -218,8 +230,7 @@ class Level {
                            is_root ? CurveKind::equal_tangent : CurveKind::orthogonal_distance};
     if (better(score, best)) best = found;
     if (!plain_over && better(score, plain)) plain = found;
-    if (is_root && better(score, root)) root = found;
-    if (is_root && !plain_over && better(score, plain_root)) plain_root = found;
+    if (is_root && !score.slow && better(score, root)) root = found;
   }
   bool better(const Score<dim>& score, const Found<dim>& than) const {
     if (than.nodes.n != degree_) return true;  // nothing yet
@@ -339,18 +350,18 @@ void climb(const Problem<dim>& problem, int degree, const Quick<dim>& quick, Fou
   Found<dim> last{problem.chord(), {}, CurveKind::placed};
   last.score = measure(problem, last.nodes);
   best = root = last;
-  Found<dim> plain = last, before;
-  int idle = 0;  // nearly exact degrees in a row that brought no gain
+  Found<dim> plain = last, before, even;  // even: the most even of those nearly exact
+  int idle = 0;                           // nearly exact degrees in a row that brought no gain
   for (int n = 2; n <= degree; ++n) {
     const bool final = n == degree;
     if (within(problem, last.score, floor_of_length)) {
       // Exact already: the same polynomial with more nodes is a root too, to rounding.
-      const bool even = more_even(problem, plain, last);
+      const bool instead = more_even(problem, even, last);
       Level<dim> top(problem, degree, effort);
-      const Nodes<dim> start = lift(problem, even ? plain.nodes : last.nodes, degree);
+      const Nodes<dim> start = lift(problem, instead ? even.nodes : last.nodes, degree);
       top.offer(start, true);
       if (quick.good) top.offer(quick.found.nodes, true);
-      if (even) {
+      if (instead) {
         top.newton(start, true);
         top.polish(top.best, {.most = 8});
       }
@@ -403,13 +414,26 @@ void climb(const Problem<dim>& problem, int degree, const Quick<dim>& quick, Fou
     before = plain;
     plain = level.plain;
     last = level.best;
+    for (const Found<dim>* found : {&plain, &last})
+      if (more_even(problem, *found, even)) even = *found;
     if (final) {
-      best = more_even(problem, level.plain, level.best) ? level.plain : level.best;
-      root = more_even(problem, level.plain_root, level.root) ? level.plain_root : level.root;
+      best = level.best;
+      root = level.root;
+      if (more_even(problem, even, best) || more_even(problem, even, root)) {
+        // Lifted nodes are up to three times as far; a few steps bring them back, and are no more
+        // than needed, since each makes them less even.
+        Nodes<dim> nodes = lift(problem, even.nodes, n);
+        Score<dim> score = measure(problem, nodes);
+        for (int most = 2; most <= 8 && !within(problem, score, nearly_floor); most *= 2)
+          effort.distance += minimise_distance(problem, nodes, score, {.most = most});
+        prefer_even(problem, nodes, best, root);
+        effort.newton += solve_tangents(problem, nodes, true).iterations;
+        prefer_even(problem, nodes, best, root);
+      }
     } else if (gained || last.score.d2 >= nearly_exact * problem.length) {
       idle = 0;
     } else if (++idle == 2) {
-      if (!more_even(problem, plain, last)) plain = last;
+      plain = more_even(problem, even, last) ? even : last;
       n = degree - 1;
     }
   }

@@ -240,6 +240,8 @@ struct Score {
   double min_speed = 0.0;              ///< smallest |p'| / (L / 2)
   double length = 0.0;                 ///< of p, over L
   bool valid = false;                  ///< nodes ordered, min_speed >= 1e-3, length >= 1 / 4
+  bool turns = false;                  ///< p runs backwards somewhere
+  bool slow = false;                   ///< so it does, or |p'| < 1e-3 L / 2 between the points
   double slow_xi = 0.0, far_xi = 0.0;  ///< where |p'| is smallest, and d largest
   using Row = std::array<double, std::size_t(4) * max_curve_degree>;
   int points = 0;                   ///< entries of the rows below
@@ -253,6 +255,8 @@ struct Score {
     min_speed = other.min_speed;
     length = other.length;
     valid = other.valid;
+    turns = other.turns;
+    slow = other.slow;
     slow_xi = other.slow_xi;
     far_xi = other.far_xi;
     points = other.points;

@@ -1,6 +1,7 @@
 #include "bezel/geometry/triangle.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -113,6 +114,25 @@ InverseResult invert(int g, std::span<const Vec2> control, const Vec2& p, const 
   return {{1.0 - u0 - v0, u0, v0}, residual <= 4e-16 * g * size && std::isfinite(residual)};
 }
 
+namespace {
+
+/// C(g,i) C(g-1,j) / C(2g-1,i+j) for all degrees: meshes ask for every element.
+const std::vector<double>& side_weights(int g) {
+  static const auto tables = [] {
+    std::array<std::vector<double>, static_cast<std::size_t>(bernstein::max_triangle_degree) + 1>
+        all;
+    for (int d = 1; d <= bernstein::max_triangle_degree; ++d)
+      for (int i = 0; i <= d; ++i)
+        for (int j = 0; j < d; ++j)
+          all[static_cast<std::size_t>(d)].push_back(binomial(d, i) * binomial(d - 1, j) /
+                                                     binomial(2 * d - 1, i + j));
+    return all;
+  }();
+  return tables[static_cast<std::size_t>(g)];
+}
+
+}  // namespace
+
 double area(int g, std::span<const Vec2> control) {
   check_triangle(g, control, bernstein::max_triangle_degree);
   // Green: area = 1/2 closed integral of x dy - y dx, each side exact by the Bernstein product
@@ -123,14 +143,14 @@ double area(int g, std::span<const Vec2> control) {
   const auto at = [&](int side, int m) {
     return control[static_cast<std::size_t>(bernstein::triangle_side_index(g, side, m))] - origin;
   };
-  for (int side = 0; side < 3; ++side)
+  const std::vector<double>& weights = side_weights(g);
+  for (int side = 0; side < 3; ++side) {
+    const double* weight = weights.data();
     for (int i = 0; i <= g; ++i) {
       const Vec2 p = at(side, i);
-      for (int j = 0; j < g; ++j) {
-        const double weight = binomial(g, i) * binomial(g - 1, j) / binomial(2 * g - 1, i + j);
-        sum += weight * cross(p, at(side, j + 1) - at(side, j));
-      }
+      for (int j = 0; j < g; ++j) sum += *weight++ * cross(p, at(side, j + 1) - at(side, j));
     }
+  }
   return 0.25 * sum;  // g (from the derivative) / (2g) / 2
 }
 

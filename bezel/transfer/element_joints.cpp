@@ -160,6 +160,15 @@ void ElementTransfer::give_strips(std::int32_t t, const ElementPieces& own, std:
   }
 }
 
+// Closed to far less than either element's width, 2 area / size: the usual case.
+bool ElementTransfer::is_closed(std::int32_t t, std::int32_t d, double gap) const {
+  const auto closed = [gap](const OverlayMesh& mesh, std::int32_t e) {
+    const auto i = static_cast<std::size_t>(e);
+    return gap * mesh.element_diameter[i] <= 2.0 * largest_joint_gap * mesh.element_area[i];
+  };
+  return closed(target_, t) && (d == exterior || closed(donor_, d));
+}
+
 // Partitions close to the rounding of the coordinates, which is large beside a thin element's
 // width.
 double ElementTransfer::largest_partition_residual(std::int32_t t) const {
@@ -185,10 +194,7 @@ void ElementTransfer::note_region(std::int32_t t, std::int32_t d, double area, d
     smaller = std::min(smaller, donor_area);
   }
   outcome.max_joint_gap = std::max(outcome.max_joint_gap, gap / size);
-  // Closed to far less than either element's width, 2 area / size: the usual case.
-  if (area >= 0.0 && gap * own_size <= 2.0 * largest_joint_gap * own_area &&
-      gap * donor_size <= 2.0 * largest_joint_gap * donor_area)
-    return;
+  if (area >= 0.0 && is_closed(t, d, gap)) return;
   const double width = 2.0 * std::min(own_area / own_size, donor_area / donor_size);
   const double distance = coincidence_distance(
       width, geometry_kernel::largest_coordinate(target_.element_box[static_cast<std::size_t>(t)]));

@@ -216,13 +216,20 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
                                     ElementOutcome& outcome) {
   area_.clear();
   bridged_.assign(own.donors.size(), 0);
+  const auto note = [&](std::size_t k) {
+    const std::int32_t d = own.donors[k];
+    RunShape shape = run_shape(run_of(own, k));
+    if (!loose_ && !is_closed(t, d, shape.gap)) {
+      loose_ = true;
+      shape = run_shape(run_of(own, k));
+    }
+    area_.push_back(shape.area);
+    bridged_[k] = bridges_.empty() ? 0 : 1;
+    note_region(t, d, shape.area, shape.gap, outcome);
+  };
   const bool batch = donor_.degree == target_.degree && target_.degree <= max_batch_degree;
   if (!batch) {
-    for (std::size_t k = 0; k < own.donors.size(); ++k) {
-      const RunShape shape = run_shape(run_of(own, k));
-      area_.push_back(shape.area);
-      note_region(t, own.donors[k], shape.area, shape.gap, outcome);
-    }
+    for (std::size_t k = 0; k < own.donors.size(); ++k) note(k);
     return false;
   }
   fill_batch(own.pieces);
@@ -242,18 +249,16 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
     const bool small =
         d != exterior && donor_.element_area[static_cast<std::size_t>(d)] <
                              small_area * target_.element_area[static_cast<std::size_t>(t)];
-    if (small || loose_) {
-      const RunShape shape = run_shape(run_of(own, k));
-      area_.push_back(shape.area);
-      bridged_[k] = bridges_.empty() ? 0 : 1;
-      note_region(t, d, shape.area, shape.gap, outcome);
+    const double* sums = batch_.region(k);
+    const double* open = sums + batch_.open;
+    const double gap = norm(open[0] * place.along_first + open[1] * place.along_second);
+    if (small || loose_ || !is_closed(t, d, gap)) {
+      loose_ = loose_ || !is_closed(t, d, gap);
+      note(k);
       continue;
     }
     bridges_.clear();
-    const double* sums = batch_.region(k);
     area_.push_back(sums[batch_.area] * batch_.area_unit);
-    const double* open = sums + batch_.open;
-    const double gap = norm(open[0] * place.along_first + open[1] * place.along_second);
     note_region(t, d, area_.back(), gap, outcome);
   }
   return summed;
@@ -304,10 +309,6 @@ void ElementTransfer::moments_to_powers(std::size_t i, std::int32_t t) {
   const Group& g = groups_[i];
   const Accumulators& moments = moment_sums_[i];
   Accumulators& sums = sums_[i];
-  const auto nc = static_cast<std::size_t>(g.components);
-  // What is there so far (parts that no donor covers) has the whole polynomials.
-  for (std::size_t n = 0; n < sums.basis.size(); ++n)
-    for (std::size_t c = 0; c < nc; ++c) sums.product[n * nc + c] -= base_[i][c] * sums.basis[n];
   const int degree = g.target_space->degree(ElementId(t));
   powers_from_moments(degree, 1, moments.basis.data(), sums.basis.data());
   powers_from_moments(degree, g.components, moments.product.data(), sums.product.data());

@@ -15,6 +15,9 @@ namespace {
 /// Gaps below this fraction of an element are rounding and are extended whatever the policy.
 constexpr double silent_gap = 1e-10;
 
+/// How large powers of barycentrics may be at points of a rule, in and around a region.
+constexpr double steepest_value = 256.0;
+
 constexpr std::uint64_t timed_elements = 16;
 
 double signed_step(const Part& part) {
@@ -42,7 +45,7 @@ ElementTransfer::ElementTransfer(const OverlayMesh& donor, const OverlayMesh& ta
       fitted_(groups.size()) {
   for (std::size_t i = 0; i < groups.size(); ++i) {
     batched_[i] = can_batch(groups[i]) ? 1 : 0;
-    fitted_[i] = batched_[i] == 0 ? 1 : 0;
+    fitted_[i] = batched_[i] == 0 && PairFit::can(groups[i], donor, target) ? 1 : 0;
   }
 }
 
@@ -265,6 +268,22 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
                     plane_.push_back(x);
                   });
     donor_places(g, d, first);
+    double largest = 1.0;
+    for (std::size_t i = first; i < count_; ++i)
+      largest = std::max({largest, std::abs(du_[i]), std::abs(dv_[i])});
+    if (std::pow(largest, pd) > steepest_value) {  // a thin donor, as below
+      count_ = first;
+      const int own_degree = pt + inexact_extra + (2 + pd) * donor_.degree - 2;
+      reference_nodes(donor_, d, run, true, own_degree);
+      std::array<double, 3> lambda{}, warm{};
+      bool found = false, have_warm = false;
+      reference_fan(donor_, d, reference_centre(), own_degree,
+                    [&](double w, const std::array<double, 2>& q, const Vec2& x) {
+                      found = invert_map(target_.degree, target_.element(t), x, lambda, found);
+                      const auto place = g.donor_mapped ? q : donor_place(g, d, x, warm, have_warm);
+                      push(w, lambda[1], lambda[2], place[0], place[1]);
+                    });
+    }
     flush(g, d, pt, sums);
   } else {
     // The donor's mean is carried exactly by the physical fan, only the rest by the rule in
@@ -277,11 +296,29 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
     reference_nodes(donor_, d, run, true, degree);
     Accumulators mapped;
     mapped.reset(functions, nc);
+    const std::size_t first = count_;
+    double largest = 1.0;
     reference_fan(donor_, d, reference_centre(), degree,
                   [&](double w, const std::array<double, 2>& q, const Vec2& x) {
                     const auto place = target_place(g, t, x);
+                    largest = std::max({largest, std::abs(place[0]), std::abs(place[1])});
                     push(w, place[0], place[1], q[0], q[1]);
                   });
+    // A thin target is bent in the donor's coordinates, and rays there leave it by many times its
+    // width: then its own coordinates serve.
+    if (std::pow(largest, pt) > steepest_value) {
+      count_ = first;
+      const int own_degree = pd + inexact_extra + 2 * (target_.degree - 1) + pt * target_.degree;
+      reference_nodes(target_, t, run, false, own_degree);
+      plane_.clear();
+      reference_fan(target_, t, reference_centre(), own_degree,
+                    [&](double w, const std::array<double, 2>&, const Vec2& x) {
+                      const auto place = target_place(g, t, x);
+                      push(w, place[0], place[1], 0.0, 0.0);
+                      plane_.push_back(x);
+                    });
+      donor_places(g, d, first);
+    }
     flush(g, d, pt, mapped);
     for (std::size_t n = 0; n < functions; ++n) {
       const double difference = exact.basis[n] - mapped.basis[n];
@@ -313,6 +350,22 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
   flush(g, d, 0, total);
   for (std::size_t c = 0; c < nc; ++c)
     mass[c] = total.mass[c] + donor_mass[c] / donor_area * (area - weight);
+}
+
+std::span<const std::array<Vec2, 2>> ElementTransfer::plane_bridges() {
+  plane_bridges_.clear();
+  for (const Bridge& bridge : bridges_)
+    plane_bridges_.push_back({origin_ + bridge.from, bridge.step});
+  return plane_bridges_;
+}
+
+// What is in the sums so far has the whole polynomials.
+void ElementTransfer::subtract_base(std::size_t i) {
+  const std::vector<double>& base = base_[i];
+  Accumulators& sums = sums_[i];
+  for (std::size_t n = 0; n < sums.basis.size(); ++n)
+    for (std::size_t c = 0; c < base.size(); ++c)
+      sums.product[n * base.size() + c] -= base[c] * sums.basis[n];
 }
 
 void ElementTransfer::begin_moments(std::size_t i) {
@@ -390,7 +443,13 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
       add_batched(i, t, own, summed && i == first_batched, region_mass_);
     }
     const bool fitted = fitted_[i] != 0 && !own.donors.empty();
-    if (fitted) fit_.begin(i, g, t, all_runs(own), blocks == nullptr);
+    // Open joints are bridged by the other rules; masses of mapped donors are all by one rule, for
+    // its errors cancel between neighbours.
+    const bool fits = fitted && !loose_;
+    if (fitted) {
+      fit_.begin(i, g, t, all_runs(own), blocks == nullptr);
+      base_[i].assign(fit_.constants().begin(), fit_.constants().end());
+    }
     double* to = given.mass.data() + first_given * components + c0;
     for (std::size_t k = 0; k < own.donors.size(); ++k) {
       const std::int32_t d = own.donors[k];
@@ -409,7 +468,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
         add_extension(g, t, run, area, run_shape(run).centre, sums_[i], here);
         for (std::size_t c = 0; c < nc; ++c) made[c0 + c] += here[c];
       } else if (!batched) {
-        if (fitted && fit_.add(d, run_begin(k), run_end_[k], area, here)) {
+        if (fits && fit_.add(d, run_begin(k), run_end_[k], area, here)) {
           if (blocks != nullptr) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
         } else {
           const auto run = run_of(own, k);
@@ -417,10 +476,10 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
           if (blocks == nullptr && by_moments(g, t, d)) {
             begin_moments(i);
             add_pair_moments(g, t, d, shape, base_[i].data(), moment_sums_[i], here);
-          } else if (fitted && fit_.finds_mass(d)) {
-            // The masses of all pairs by one rule: its errors cancel between neighbours.
+          } else if (fits || (fitted && g.donor_mapped)) {
             fitted_mass_.assign(nc, 0.0);
             add_pair(g, t, d, run, area, shape.centre, sums_[i], fitted_mass_);
+            if (loose_) fit_.mass_of(d, run_begin(k), run_end_[k], area, plane_bridges(), here);
           } else {
             add_pair(g, t, d, run, area, shape.centre, sums_[i], here);
           }
@@ -432,15 +491,10 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
       to += components;
       if (blocks != nullptr) keep_pair(d, sums_[i], here, *blocks);
     }
-    if (fitted) {
-      // What is there so far has the whole polynomials.
-      const auto constant = fit_.constant();
-      std::copy(constant.begin(), constant.end(), base_[i].begin());
-      for (std::size_t n = 0; n < sums_[i].basis.size(); ++n)
-        for (std::size_t c = 0; c < nc; ++c)
-          sums_[i].product[n * nc + c] -= constant[c] * sums_[i].basis[n];
-      fit_.take(sums_[i].product.data(), sums_[i].basis.data());
-    }
+    if (blocks == nullptr) subtract_base(i);
+    if (fits) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
+    // Donors of several degrees: what is not summed by moments is in the other sums.
+    if (!batched) extended_[i] = 1;
     c0 += nc;
   }
   if (loose_ && blocks == nullptr && components > 0) give_strips(t, own, components, given, made);

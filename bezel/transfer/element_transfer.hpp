@@ -95,6 +95,9 @@ class ElementTransfer {
   /// Also fills piece_control_ and bridges_.
   RunShape run_shape(std::span<const Segment> run);
   double bridge_joints();
+  /// Starts and steps of bridges_ in the plane.
+  std::span<const std::array<Vec2, 2>> plane_bridges();
+  bool is_closed(std::int32_t t, std::int32_t d, double gap) const;
   void give_strips(std::int32_t t, const ElementPieces& own, std::size_t components,
                    GivenList& given, std::span<double> made);
   double largest_partition_residual(std::int32_t t) const;
@@ -110,6 +113,7 @@ class ElementTransfer {
   static bool can_batch(const Group& g);
   static TargetPlace target_place(const Group& g, std::int32_t t);
   void begin_moments(std::size_t group);
+  void subtract_base(std::size_t group);
   void fill_batch(std::span<const BoundaryPiece> pieces);
   template <std::size_t points>
   void fill_curves(std::span<const BoundaryPiece> pieces);
@@ -204,6 +208,7 @@ class ElementTransfer {
     Vec2 from, step;
   };
   std::vector<Bridge> bridges_;
+  std::vector<std::array<Vec2, 2>> plane_bridges_;
   std::vector<Vec2> piece_starts_, piece_ends_;
   bool loose_ = false;  // this element's joints may be open a little
   std::vector<MomentPiece> moment_pieces_;
@@ -229,7 +234,7 @@ class ElementTransfer {
   std::vector<double> powers_;
   std::vector<std::vector<double>> base_;   // by group, [component]: taken off before integrating
   std::vector<std::uint8_t> have_moments_;  // by group: for this element
-  std::vector<std::uint8_t> extended_;      // by group: into what no donor covers of this element
+  std::vector<std::uint8_t> extended_;      // by group: sums_ hold what moment_sums_ lack
   std::vector<std::uint8_t> batched_;       // by group: goes by add_batched
   PairFit fit_;
   std::vector<std::uint8_t> fitted_;  // by group: goes by fit_

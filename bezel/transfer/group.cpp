@@ -54,11 +54,11 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
   const auto nc = static_cast<std::size_t>(components);
   scaled.resize(donor_space->coefficient_count() * nc);
   donor_mass.resize(elements * nc);
-  const std::vector<double> integrals = field_detail::basis_integrals(*donor_space);
+  donor_integrals = field_detail::basis_integrals(*donor_space);
   std::size_t c0 = 0;
   for (const Field* f : fields) {
     const auto own = static_cast<std::size_t>(f->components());
-    const std::vector<double> masses = field_detail::element_integrals(*f, integrals);
+    const std::vector<double> masses = field_detail::element_integrals(*f, donor_integrals);
     for (std::size_t e = 0; e < elements; ++e) {
       const auto coefficients = f->coefficients(ElementId(e));
       const auto factors = multinomials(donor_space->degree(ElementId(e)));

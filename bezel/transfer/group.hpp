@@ -51,6 +51,7 @@ struct Group {
                                           ///< target element; empty when the space has none
   std::vector<double> scaled;             ///< donor coefficients times multinomials, per element
                                           ///< [component][n]; of basis functions per degree
+  std::vector<double> donor_integrals;    ///< of the donor's basis functions; not of basis groups
   std::vector<double> donor_mass;         ///< per element [component]
   /// Coefficients of the monomials in the barycentrics less 1/3, per element [component][n]: of
   /// donors that are not mapped and have at most max_moment_degree.

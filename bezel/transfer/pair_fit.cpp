@@ -24,8 +24,7 @@ constexpr int more_degrees = 3;
 constexpr double composed_accuracy = 1e-3;
 /// Places for donor elements whose maps are kept.
 constexpr std::size_t kept_donors = 256;
-/// Highest degrees of fields, one of them mapped or none: above, quadrature is more accurate.
-constexpr int max_mapped_degree = 6;
+/// Highest degree of fields that are not mapped: above, quadrature is more accurate.
 constexpr int max_plane_degree = 5;
 /// A point of a curve in an element may lie this much outside it, in barycentrics.
 constexpr double outside = 1e-6;
@@ -93,18 +92,14 @@ void pad(CurvePoints& points) {
 PairFit::PairFit(const OverlayMesh& donor, const OverlayMesh& target, std::size_t groups)
     : donor_(donor), target_(target), donors_(groups) {}
 
-bool PairFit::in_reach(int donor_degree) const {
-  const int pt = g_->target_space->degree(ElementId(t_));
-  const int most = g_->donor_mapped || g_->target_mapped ? max_mapped_degree : max_plane_degree;
-  if (std::max(donor_degree, pt) > most) return false;
-  const int m = fit_degree(*g_, target_, donor_degree);
-  return m <= max_fit_degree && target_degree_ < static_cast<int>(2 * fit_lanes) &&
-         m + target_degree_ <= max_fit_moments;
-}
-
-bool PairFit::finds_mass(std::int32_t d) const {
-  if (!g_->donor_mapped) return g_->target_mapped;
-  return mass_degree(donor_, g_->donor_space->degree(ElementId(d))) <= max_fit_degree;
+bool PairFit::can(const Group& g, const OverlayMesh& donor, const OverlayMesh& target) {
+  const int pd = g.donor_degree.highest;
+  const int pt = g.target_space->highest_degree();
+  if (!g.donor_mapped && !g.target_mapped && std::max(pd, pt) > max_plane_degree) return false;
+  const int k = target_degree(g, target, pt);
+  const int m = fit_degree(g, target, pd);
+  return m <= max_fit_degree && k < static_cast<int>(2 * fit_lanes) && m + k <= max_fit_moments &&
+         (!g.donor_mapped || mass_degree(donor, pd) <= max_fit_degree);
 }
 
 void PairFit::reserve(const FitTable& table, std::size_t components, int moments) {
@@ -198,18 +193,8 @@ void PairFit::begin(std::size_t i, const Group& g, std::int32_t t,
   // Of a donor, so that a constant leaves nothing to integrate.
   zero(constant_, static_cast<std::size_t>(g.components));
   const std::int32_t d = segments.back().donor;
-  if (around_a_constant && d != exterior && (!g.donor_mapped || finds_mass(d)))
-    constant_ = donor_of(d).mean;
-  // Of this element's donors only: the bits do not depend on the rest of the mesh.
-  donor_degree_ = 0;
-  for (const Segment& segment : segments)
-    if (segment.donor != exterior)
-      donor_degree_ = std::max(donor_degree_, g.donor_space->degree(ElementId(segment.donor)));
-  ready_ = in_reach(donor_degree_);
-  if (ready_)
-    make_target_points(segments);
-  else
-    zero(constant_, constant_.size());
+  if (around_a_constant && d != exterior) constant_ = donor_of(d).mean;
+  make_target_points(segments);
 }
 
 void PairFit::make_target_points(std::span<const Segment> segments) {
@@ -219,7 +204,7 @@ void PairFit::make_target_points(std::span<const Segment> segments) {
   if (seen_.size() < donor_.edge_box.size()) seen_.resize(donor_.edge_box.size());
   ++stamp_;
   // Degrees that interpolation adds are small and need no exact rule.
-  const int pd = donor_degree_;
+  const int pd = g_->donor_degree.highest;
   const int degree =
       target_degree_ + (g_->donor_mapped && pd > 0 ? pd + 1 : fit_degree(*g_, target_, pd));
   const bool mapped = g_->target_mapped;
@@ -371,11 +356,10 @@ bool PairFit::place_points(std::int32_t d, int m, int p, const FitFrame& frame) 
 bool PairFit::add(std::int32_t d, std::size_t begin, std::size_t end, double area,
                   std::span<double> mass) {
   const int pd = g_->donor_space->degree(ElementId(d));
-  const bool found = finds_mass(d);
-  if (g_->donor_mapped && !found) return false;
+  const Donor& donor = donor_of(d);
   if (g_->donor_mapped)
-    donor_mass(donor_of(d), begin, end, area, mass);
-  else if (found)
+    donor_mass(donor, begin, end, area, {}, mass);
+  else if (g_->target_mapped)
     plane_mass(d, begin, end, area, mass);
   if (!ready_) return false;
   collect(begin, end);
@@ -399,7 +383,6 @@ bool PairFit::add(std::int32_t d, std::size_t begin, std::size_t end, double are
   const double scale = frame.half[0] * frame.half[1] *
                        (target_map_.x[1] * target_map_.y[2] - target_map_.x[2] * target_map_.y[1]);
   const std::size_t stride = fit_stride(m + target_degree_);
-  const Donor& donor = donor_of(d);
   for (std::size_t c = 0; c < nc; ++c) {
     const double* term = terms_.data() + c * table.terms;
     double sum = 0.0;
@@ -413,10 +396,15 @@ bool PairFit::add(std::int32_t d, std::size_t begin, std::size_t end, double are
   return true;
 }
 
+void PairFit::mass_of(std::int32_t d, std::size_t begin, std::size_t end, double area,
+                      std::span<const std::array<Vec2, 2>> bridges, std::span<double> mass) {
+  donor_mass(donor_of(d), begin, end, area, bridges, mass);
+}
+
 // By a rule whose parts cancel between neighbouring target elements: along the donor's own sides
 // exact, along a target edge with nodes that both elements beside it have.
 void PairFit::donor_mass(const Donor& donor, std::size_t begin, std::size_t end, double area,
-                         std::span<double> mass) {
+                         std::span<const std::array<Vec2, 2>> bridges, std::span<double> mass) {
   const int degree = mass_degree(donor_, g_->donor_space->degree(ElementId(donor.element)));
   const int pulled = degree / 2 + 1 + pulled_extra;
   boundary_.clear();
@@ -440,6 +428,13 @@ void PairFit::donor_mass(const Donor& donor, std::size_t begin, std::size_t end,
   for (std::size_t i = begin; i < end; ++i)
     if (segments_[i].source.edge >= 0)
       append_side(donor_, donor.element, segments_[i].source, degree / 2 + 1, boundary_);
+  for (const auto& [from, step] : bridges) {
+    std::array<double, 3> lambda{};
+    if (!invert_map(donor_.degree, donor_.element(donor.element), from + 0.5 * step, lambda, false))
+      continue;
+    const std::size_t at = boundary_.append(1);
+    pull_point(donor.element, lambda, step, at);
+  }
   pad(boundary_);
   const FitFrame frame{{1.0 / 3.0, 1.0 / 3.0}, {reference_half, reference_half}};
   const std::size_t rows = fit_rows(degree);
@@ -459,14 +454,19 @@ void PairFit::append_one_by_one(std::int32_t d, const Part& part, int points) {
   for (std::size_t i = 0; i < line.count; ++i) {
     const auto at = edge_point(target_.edge(part.edge), part.from + step * line.node[i]);
     warm = invert_map(donor_.degree, donor_.element(d), at.value, lambda, warm);
-    const auto map = bernstein::kernel::evaluate_gradient_unchecked<Vec2, double>(
-        donor_.degree, donor_.element(d).data(), lambda);
-    const double scale = step * line.weight[i] / cross(map.du, map.dv);
-    boundary_.x[first + i] = lambda[1];
-    boundary_.y[first + i] = lambda[2];
-    boundary_.dx[first + i] = cross(at.derivative, map.dv) * scale;
-    boundary_.dy[first + i] = cross(map.du, at.derivative) * scale;
+    pull_point(d, lambda, at.derivative * (step * line.weight[i]), first + i);
   }
+}
+
+void PairFit::pull_point(std::int32_t d, const std::array<double, 3>& lambda, const Vec2& step,
+                         std::size_t at) {
+  const auto map = bernstein::kernel::evaluate_gradient_unchecked<Vec2, double>(
+      donor_.degree, donor_.element(d).data(), lambda);
+  const double scale = 1.0 / cross(map.du, map.dv);
+  boundary_.x[at] = lambda[1];
+  boundary_.y[at] = lambda[2];
+  boundary_.dx[at] = cross(step, map.dv) * scale;
+  boundary_.dy[at] = cross(map.du, step) * scale;
 }
 
 // Exactly, in the plane.

@@ -19,6 +19,9 @@ class PairFit {
  public:
   PairFit(const OverlayMesh& donor, const OverlayMesh& target, std::size_t groups);
 
+  /// Whether the degrees of a group are in reach.
+  static bool can(const Group& g, const OverlayMesh& donor, const OverlayMesh& target);
+
   /// Starts on target element t for group number i.
   /// @param around_a_constant  whether only what differs from one donor's mean is integrated
   void begin(std::size_t i, const Group& g, std::int32_t t, std::span<const Segment> segments,
@@ -26,14 +29,17 @@ class PairFit {
   /// Adds the pair with donor d, the segments begin .. end; false, and only the mass is found,
   /// where the maps are too far from affine for it.
   /// @param area  of the pair
-  /// @param mass  out, [component]
+  /// @param mass  out, [component]; where one of the fields is mapped also when the answer is false
   bool add(std::int32_t d, std::size_t begin, std::size_t end, double area, std::span<double> mass);
-  /// Whether add() finds the mass of a pair with donor d even where its answer is false.
-  bool finds_mass(std::int32_t d) const;
-  /// [component] what is left out of the donors for take().
-  std::span<const double> constant() const { return constant_; }
+  /// [component] what is taken off the donors' polynomials.
+  std::span<const double> constants() const { return constant_; }
+  /// The mass alone, of a mapped donor, with straight pieces that close the region's joints: their
+  /// starts and steps in the plane.
+  void mass_of(std::int32_t d, std::size_t begin, std::size_t end, double area,
+               std::span<const std::array<Vec2, 2>> bridges, std::span<double> mass);
   /// Adds what the pairs since the last call gave: integrals with the powers l0^i l1^j l2^k of the
-  /// target's barycentrics, product[n * components + c] and basis[n].
+  /// target's barycentrics, product[n * components + c] of the fields less the constants, and
+  /// basis[n].
   void take(double* product, double* basis);
 
  private:
@@ -55,7 +61,6 @@ class PairFit {
                                // triangle
   };
 
-  bool in_reach(int donor_degree) const;
   const Rule& rule(int points);
   const Donor& donor_of(std::int32_t d);
   /// Makes room for the points of a table, values and terms, and moments of a degree.
@@ -70,7 +75,10 @@ class PairFit {
   bool donor_places(std::int32_t d, std::size_t padded);
   bool place_points(std::int32_t d, int m, int p, const FitFrame& frame);
   void donor_mass(const Donor& donor, std::size_t begin, std::size_t end, double area,
-                  std::span<double> mass);
+                  std::span<const std::array<Vec2, 2>> bridges, std::span<double> mass);
+  /// Sets a point of boundary_ in the donor's reference triangle.
+  void pull_point(std::int32_t d, const std::array<double, 3>& lambda, const Vec2& step,
+                  std::size_t at);
   void append_one_by_one(std::int32_t d, const Part& part, int points);
   void plane_mass(std::int32_t d, std::size_t begin, std::size_t end, double area,
                   std::span<double> mass);
@@ -86,7 +94,6 @@ class PairFit {
   std::int32_t t_ = 0;
   std::span<const Segment> segments_;
   int target_degree_ = 0;  // of the monomials, Jacobian included
-  int donor_degree_ = 0;   // highest of the element's donors
   bool ready_ = false;
   Vec2 origin_;
   MapPolynomial target_map_;

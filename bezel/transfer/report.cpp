@@ -8,12 +8,16 @@
 
 namespace bezel::detail {
 
-Reports::Measures& Reports::measures(const Field& field) {
+Reports::Measures& Reports::measures(const std::shared_ptr<const Space>& space) {
   for (const auto& known : measures_)
-    if (known->space == field.space_ptr()) return *known;
+    if (known->space == space) return *known;
   measures_.push_back(std::make_unique<Measures>());
-  measures_.back()->space = field.space_ptr();
+  measures_.back()->space = space;
   return *measures_.back();
+}
+
+void Reports::know(const std::shared_ptr<const Space>& space, std::vector<double> basis_integrals) {
+  measures(space).basis_integrals = std::move(basis_integrals);
 }
 
 std::span<FieldReport> Reports::add(std::size_t place, const Field& donor, const Field& moved,

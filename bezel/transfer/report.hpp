@@ -19,6 +19,9 @@ class Reports {
   /// @param fields  how many donor fields there are: their lines come in that order
   Reports(std::size_t fields, int threads) : lines_(fields), threads_(threads) {}
 
+  /// Saves the work where the integrals of a space's basis functions are known already.
+  void know(const std::shared_ptr<const Space>& space, std::vector<double> basis_integrals);
+
   /// Field number `place`; donor and moved must stay where they are until finish().
   /// @param spread          mass added besides, or empty
   /// @param element_defect  largest |element mass - mass received|, per component
@@ -45,7 +48,8 @@ class Reports {
     const Field* moved;
     std::size_t place, line;
   };
-  Measures& measures(const Field& field);
+  Measures& measures(const std::shared_ptr<const Space>& space);
+  Measures& measures(const Field& field) { return measures(field.space_ptr()); }
 
   std::vector<std::vector<FieldReport>> lines_;
   std::vector<Sought> sought_;

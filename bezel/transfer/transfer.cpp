@@ -229,6 +229,7 @@ TransferResult detail::transfer_by(const Sweeper& sweeper, std::span<const Field
 
   std::vector<std::optional<Field>> fields(donors.size());
   detail::Reports reports(donors.size(), options.threads);
+  for (detail::Group& g : plan.groups) reports.know(g.donor_space, std::move(g.donor_integrals));
   std::size_t c0 = 0;
   for (std::size_t k = 0; k < plan.groups.size(); ++k) {
     const detail::Group& g = plan.groups[k];

@@ -67,6 +67,28 @@ TEST_P(EveryDegree, AspectRatioAMillion) {
   expect_kept_both_ways(flat, other, "both flat");
 }
 
+// Rows and columns of width 1e-6 between ordinary ones: coordinates are rounded to 1e-10 of that.
+TEST(Robust, ThinRowsOfElements) {
+  const auto squeeze = [](double x) {
+    const double off = std::abs(x);
+    return off <= 0.5 ? 2e-6 * x : std::copysign(1e-6 + (2.0 * off - 1.0) * (1.0 - 1e-6), x);
+  };
+  for (const int g : {1, 2}) {
+    const auto thin = grid_mesh(4, g, 1.0, [&](const Vec2& p) {
+      return Vec2{{squeeze(p[0]), p[1]}};
+    });
+    const auto crossed = grid_mesh(4, g, 1.0, [&](const Vec2& p) {
+      return Vec2{{p[0], squeeze(p[1])}};
+    });
+    const auto ordinary = grid_mesh(3, 2, 1.0, bend(0.1, 0.1));
+    for (const auto& [from, to] : {std::pair(0, 1), std::pair(2, 2), std::pair(3, 3)}) {
+      expect_kept(thin, crossed, from, to, "crossed", 1e3);
+      expect_kept(thin, ordinary, from, to, "thin to ordinary", 1e3);
+      expect_kept(ordinary, thin, from, to, "ordinary to thin", 1e3);
+    }
+  }
+}
+
 TEST(Robust, OneElementOverManyAndBack) {
   for (const int g : {1, 3}) {
     expect_kept_both_ways(grid_mesh(1, g, 1.0, bend(0.1, 0.1)),
