@@ -355,12 +355,12 @@ bool PairFit::place_points(std::int32_t d, int m, int p, const FitFrame& frame) 
 
 bool PairFit::add(std::int32_t d, std::size_t begin, std::size_t end, double area,
                   std::span<double> mass) {
-  const Donor& donor = donor_of(d);
   const int pd = g_->donor_space->degree(ElementId(d));
+  const Donor& donor = donor_of(d);
   if (g_->donor_mapped)
     donor_mass(donor, begin, end, area, {}, mass);
   else if (g_->target_mapped)
-    plane_mass(d, begin, end, mass);
+    plane_mass(d, begin, end, area, mass);
   if (!ready_) return false;
   collect(begin, end);
   FitFrame frame = fit_frame(boundary_);
@@ -385,11 +385,13 @@ bool PairFit::add(std::int32_t d, std::size_t begin, std::size_t end, double are
   const std::size_t stride = fit_stride(m + target_degree_);
   for (std::size_t c = 0; c < nc; ++c) {
     const double* term = terms_.data() + c * table.terms;
-    double sum = constant_[c] * moments_[0];
+    double sum = 0.0;
     for (int b = 0; b <= m; ++b)
       for (int a = 0; a <= m - b; ++a, ++term)
         sum += *term * moments_[static_cast<std::size_t>(b) * stride + static_cast<std::size_t>(a)];
-    mass[c] = scale * sum;
+    // Around the donor's mean, so that a constant gives its area exactly.
+    const double mean = donor.mean[c];
+    mass[c] = mean * area + scale * (sum - (mean - constant_[c]) * moments_[0]);
   }
   return true;
 }
@@ -468,7 +470,7 @@ void PairFit::pull_point(std::int32_t d, const std::array<double, 3>& lambda, co
 }
 
 // Exactly, in the plane.
-void PairFit::plane_mass(std::int32_t d, std::size_t begin, std::size_t end,
+void PairFit::plane_mass(std::int32_t d, std::size_t begin, std::size_t end, double area,
                          std::span<double> mass) {
   const int pd = g_->donor_space->degree(ElementId(d));
   const Vec2 origin = target_map_.base;
@@ -484,7 +486,7 @@ void PairFit::plane_mass(std::int32_t d, std::size_t begin, std::size_t end,
   pad(boundary_);
   const FitFrame frame = fit_frame(boundary_);
   if (!(frame.half[0] > 0.0 && frame.half[1] > 0.0)) {
-    std::fill(mass.begin(), mass.end(), 0.0);
+    for (std::size_t c = 0; c < mass.size(); ++c) mass[c] = donor_of(d).mean[c] * area;
     return;
   }
   const FitTable& table = fit_table(pd);
@@ -502,11 +504,11 @@ void PairFit::plane_mass(std::int32_t d, std::size_t begin, std::size_t end,
   const std::size_t stride = fit_stride(pd);
   for (std::size_t c = 0; c < mass.size(); ++c) {
     const double* term = terms_.data() + c * table.terms;
-    double sum = donor_of(d).mean[c] * moments_[0];
+    double sum = 0.0;
     for (int b = 0; b <= pd; ++b)
       for (int a = 0; a <= pd - b; ++a, ++term)
         sum += *term * moments_[static_cast<std::size_t>(b) * stride + static_cast<std::size_t>(a)];
-    mass[c] = sum * frame.half[0] * frame.half[1];
+    mass[c] = donor_of(d).mean[c] * area + sum * frame.half[0] * frame.half[1];
   }
 }
 
@@ -542,9 +544,7 @@ void PairFit::take(double* product, double* basis) {
   const auto size = static_cast<std::size_t>(bernstein::triangle_size(p));
   const std::vector<double>& matrix = power_matrix(p);
   std::array<double, static_cast<std::size_t>(bernstein::triangle_size(max_power_degree))> moments;
-  std::vector<double>& powers = values_;
-  if (powers.size() < size) powers.resize(size);
-  for (std::size_t c = nc + 1; c-- > 0;) {
+  for (std::size_t c = 0; c <= nc; ++c) {
     double* sums = sums_.data() + c * rows;
     std::size_t n = 0;
     for (int b = 0; b <= p; ++b) {
@@ -563,12 +563,10 @@ void PairFit::take(double* product, double* basis) {
     for (n = 0; n < size; ++n) {
       const double sum =
           dot(std::span(matrix).subspan(n * size, size), std::span(moments).first(size));
-      if (c == nc) {
-        powers[n] = sum;
+      if (c == nc)
         basis[n] += sum;
-      } else {
+      else
         product[n * nc + c] += sum;
-      }
     }
   }
 }

@@ -80,7 +80,8 @@ class PairFit {
   void pull_point(std::int32_t d, const std::array<double, 3>& lambda, const Vec2& step,
                   std::size_t at);
   void append_one_by_one(std::int32_t d, const Part& part, int points);
-  void plane_mass(std::int32_t d, std::size_t begin, std::size_t end, std::span<double> mass);
+  void plane_mass(std::int32_t d, std::size_t begin, std::size_t end, double area,
+                  std::span<double> mass);
 
   const OverlayMesh& donor_;
   const OverlayMesh& target_;
