@@ -103,10 +103,12 @@ TEST_P(Operator, EqualsTransferAndItsAdjoint) {
     const TransferResult expected = transfer(fields, meshes.target, options);
     const TransferOperator move(space, meshes.target, options);
     const TransferResult found = move.transfer(fields);
-    // Constants differ most, by transfer's own rounding (1.1e-14 of them; the operator's 2e-15).
+    // Both are rounded by a few u times the condition of the mass matrix (56 at degree 3), relative
+    // to the result, which on partly covered elements is larger than the field.
+    const double allowed = options.degree < 3 ? 1e-14 : 4.0 * 56.0 * 0x1p-53;
     for (std::size_t i = 0; i < fields.size(); ++i) {
       EXPECT_LE(largest_value_difference(expected.fields[i], found.fields[i]),
-                2e-14 * largest(fields[i].coefficients()));
+                allowed * largest(expected.fields[i].coefficients()));
     }
     if (policy == Uncovered::extend) {
       for (const double c : found.fields[1].coefficients()) EXPECT_NEAR(c, 3.25, 1e-13);
