@@ -109,6 +109,9 @@ std::array<Vec2, 3> Frame::corners() const {
   return {point({1.0, 0.0, 0.0}), point({0.0, 1.0, 0.0}), point({0.0, 0.0, 1.0})};
 }
 
+/// Twice a triangle's area over the squares of two sides, above which it is far from thin.
+constexpr double well_shaped = 1e-3;
+
 Frame element_frame(std::span<const Vec2> control) {
   if (control.empty()) throw InputError("an element frame needs control points, found none");
   Box2 box;
@@ -118,6 +121,20 @@ Frame element_frame(std::span<const Vec2> control) {
   }
   if (!(box.diameter() > 0.0))
     throw InputError("all control points of an element coincide, expected a triangle");
+
+  // A straight triangle is its own frame; written down at once when it is not thin.
+  if (control.size() == 3) {
+    const Vec2 a = control[1] - control[0], b = control[2] - control[0];
+    const double det = a.x() * b.y() - a.y() * b.x();
+    if (det > well_shaped * (dot(a, a) + dot(b, b))) {
+      Frame frame;
+      frame.centre = control[0] + (a + b) * (1.0 / 3.0);
+      frame.gradient[0] = {(a.y() - b.y()) / det, (b.x() - a.x()) / det};
+      frame.gradient[1] = {b.y() / det, -b.x() / det};
+      frame.gradient[2] = -(frame.gradient[0] + frame.gradient[1]);
+      return frame;
+    }
+  }
 
   // z = L^-1 Q^T (p - start): covariance 1. Turning to the principal axes first keeps the digits of
   // thin elements.

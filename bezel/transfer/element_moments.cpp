@@ -243,23 +243,38 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
           : TargetPlace{origin_, Vec2{{1, 0}}, Vec2{{0, 1}}, Vec2{{1, 0}}, Vec2{{0, 1}}, 1.0};
   region_sums(piece_table(target_.degree, degree), degree, origin_, place, own.pieces,
               own.donors.size(), batch_);
+  const double own_area = target_.element_area[static_cast<std::size_t>(t)];
+  const double own_size = target_.element_diameter[static_cast<std::size_t>(t)];
+  const double own_gap = 2.0 * largest_joint_gap * own_area / own_size;
   for (std::size_t k = 0; k < own.donors.size(); ++k) {
     const std::int32_t d = own.donors[k];
-    // About a place in the target element, areas are known to its rounding.
-    const bool small =
-        d != exterior && donor_.element_area[static_cast<std::size_t>(d)] <
-                             small_area * target_.element_area[static_cast<std::size_t>(t)];
     const double* sums = batch_.region(k);
     const double* open = sums + batch_.open;
     const double gap = norm(open[0] * place.along_first + open[1] * place.along_second);
+    const double area = sums[batch_.area] * batch_.area_unit;
+    // About a place in the target element, areas are known to its rounding.
+    bool small = false;
+    if (d != exterior) {
+      const double donor_area = donor_.element_area[static_cast<std::size_t>(d)];
+      const double donor_size = donor_.element_diameter[static_cast<std::size_t>(d)];
+      small = donor_area < small_area * own_area;
+      // The usual case, as is_closed() and note_region() have it.
+      if (!small && !loose_ && area >= 0.0 && gap <= own_gap &&
+          gap * donor_size <= 2.0 * largest_joint_gap * donor_area) {
+        area_.push_back(area);
+        outcome.max_joint_gap =
+            std::max(outcome.max_joint_gap, gap / std::min(own_size, donor_size));
+        continue;
+      }
+    }
     if (small || loose_ || !is_closed(t, d, gap)) {
       loose_ = loose_ || !is_closed(t, d, gap);
       note(k);
       continue;
     }
     bridges_.clear();
-    area_.push_back(sums[batch_.area] * batch_.area_unit);
-    note_region(t, d, area_.back(), gap, outcome);
+    area_.push_back(area);
+    note_region(t, d, area, gap, outcome);
   }
   return summed;
 }

@@ -98,13 +98,18 @@ std::vector<std::int32_t> OverlayMesh::spatial_order() const {
   return morton_order(centres);
 }
 
-FrontSearch::FrontSearch(const OverlayMesh& mesh) : mesh_(mesh), tree_(mesh.element_box) {
+FrontSearch::FrontSearch(const OverlayMesh& mesh) : mesh_(mesh) {
   collect_edges_at_vertices();
   if (mesh.degree == 1) straight_ = straight_elements(mesh);
 }
 
 FrontSearch::FrontSearch(const OverlayMesh& part, bool connected) : FrontSearch(part) {
   connected_ = connected;
+}
+
+const Bvh& FrontSearch::tree() const {
+  std::call_once(tree_made_, [&] { tree_ = std::make_unique<const Bvh>(mesh_.element_box); });
+  return *tree_;
 }
 
 void FrontSearch::collect_edges_at_vertices() {
@@ -144,8 +149,10 @@ void FrontSearch::collect_edges_at_vertices() {
 
 std::int32_t FrontSearch::containing(const Vec2& p, std::int32_t start, Memory& memory) const {
   if (!straight_.empty()) {
-    // Towards the side that p is farthest beyond.
-    for (int step = 0; start >= 0 && step < longest_walk; ++step) {
+    // Towards the side that p is farthest beyond; across the whole mesh if need be, for these steps
+    // are short.
+    const std::size_t longest = static_cast<std::size_t>(longest_walk) + straight_.size() / 64;
+    for (std::size_t step = 0; start >= 0 && step < longest; ++step) {
       const StraightElement& element = straight_[static_cast<std::size_t>(start)];
       const auto& c = element.corner;
       const std::array<double, 3> l = {cross(c[1] - c[0], p - c[0]), cross(c[2] - c[1], p - c[1]),
@@ -176,7 +183,7 @@ std::int32_t FrontSearch::containing(const Vec2& p, std::int32_t start, Memory& 
   Box2 point;
   point.include(p);
   memory.found.clear();
-  tree_.query(point, memory.found);
+  tree().query(point, memory.found);
   for (const std::int32_t e : memory.found) {
     if (margin_of(e, lambda) && *std::min_element(lambda.begin(), lambda.end()) > clear_of_edges)
       return e;
@@ -233,13 +240,13 @@ void FrontSearch::query(const Box2& box, std::span<const std::int32_t> near, Mem
   }
   if (!complete) {
     out.clear();
-    tree_.query(box, out);
+    tree().query(box, out);
   }
   std::sort(out.begin(), out.end());
 }
 
 std::int32_t FrontSearch::nearest(const Vec2& p) const {
-  return tree_.nearest(p, [&](std::int32_t e) {
+  return tree().nearest(p, [&](std::int32_t e) {
     // Distance to the polygon through the corners and side control points is enough to pick a
     // neighbour.
     double best = std::numeric_limits<double>::infinity();

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -108,8 +109,12 @@ class FrontSearch {
  private:
   void collect_edges_at_vertices();
 
+  /// Made when it is first asked for.
+  const Bvh& tree() const;
+
   const OverlayMesh& mesh_;
-  Bvh tree_;
+  mutable std::once_flag tree_made_;
+  mutable std::unique_ptr<const Bvh> tree_;
   std::vector<std::uint32_t> vertex_offset_;
   std::vector<std::int32_t> vertex_edges_;
   std::vector<StraightElement> straight_;

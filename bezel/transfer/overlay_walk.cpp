@@ -183,16 +183,11 @@ void ElementOverlay::next_group() {
 void ElementOverlay::add_target_pieces(std::int32_t t, OverlayList& list) {
   for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
     const Record& record = known_record(side.edge);
-    const std::size_t first = list.pieces.size(), count = record.piece_end - record.piece_begin;
-    list.pieces.resize(first + count);
-    BoundaryPiece* to = list.pieces.data() + first;
-    const Piece* from = pieces_.data() + record.piece_begin;
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto& [r0, r1, donor, coincidence] = from[i];
-      to[i].part = side.reversed ? Part{side.edge.value, r1, r0} : Part{side.edge.value, r0, r1};
-      to[i].source = false;
-      to[i].left = region_of(donor, list);
-      to[i].right = -1;
+    const Piece* const end = pieces_.data() + record.piece_end;
+    for (const Piece* piece = pieces_.data() + record.piece_begin; piece < end; ++piece) {
+      const Part part = side.reversed ? Part{side.edge.value, piece->r1, piece->r0}
+                                      : Part{side.edge.value, piece->r0, piece->r1};
+      list.pieces.push_back({part, false, region_of(piece->donor, list), -1});
     }
   }
 }

@@ -99,13 +99,11 @@ bool ElementOverlay::walk_straight_edge(std::int32_t edge, Record& record) {
     const std::size_t entered = static_cast<std::size_t>(beyond & 3);
     const std::size_t opposite = after[after[entered]];
     const double third = cross(d, at->corner[opposite] - a);
-    if (third >= 0.0) {
-      side = after[entered];
-      to = third;
-    } else {
-      side = opposite;
-      from = third;
-    }
+    // Without a branch: half of the vertices lie left.
+    const bool is_left = third >= 0.0;
+    side = is_left ? after[entered] : opposite;
+    to = is_left ? third : to;
+    from = is_left ? from : third;
   }
   last_donor_ = donor;
   if (donor_at_vertex(ends[1]) != donor) {
