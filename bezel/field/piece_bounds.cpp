@@ -22,13 +22,13 @@ std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
 
+}  // namespace
+
 double largest(std::span<const double> c) {
   double m = 0.0;
   for (const double x : c) m = std::max(m, std::abs(x));
   return m;
 }
-
-}  // namespace
 
 void check_component(const Field& field, int component) {
   if (component < 0 || component >= field.components())

@@ -12,6 +12,8 @@ namespace bezel::field_detail {
 void check_component(const Field& field, int component);
 /// Coefficients of one component. @throws InputError when the element does not exist
 std::vector<double> component_of(const Field& field, ElementId e, int component);
+/// The largest magnitude; 0 when there is none.
+double largest(std::span<const double> c);
 /// Whether the polynomial in reference coordinates has a degree that is supported.
 bool composable(const Field& field, ElementId e);
 

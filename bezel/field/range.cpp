@@ -20,18 +20,13 @@ using bernstein::triangle_size;
 using field_detail::check_component;
 using field_detail::component_of;
 using field_detail::composable;
+using field_detail::largest;
 using field_detail::piece_bounds;
 
 constexpr double u = 0x1p-53;
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
-}
-
-double largest(std::span<const double> c) {
-  double m = 0.0;
-  for (const double x : c) m = std::max(m, std::abs(x));
-  return m;
 }
 
 /// Bound of the rounding error of Frame::lambda at a point.

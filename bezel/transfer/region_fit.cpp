@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <mutex>
 #include <numbers>
@@ -42,6 +43,9 @@ inline const FitDivisors& fit_divisors() {
 }  // namespace bezel::detail
 #endif
 
+// load() is always inlined: how a vector is returned does not matter.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 HWY_BEFORE_NAMESPACE();
 namespace bezel::detail::HWY_NAMESPACE {
 
@@ -49,13 +53,13 @@ namespace bezel::detail::HWY_NAMESPACE {
 // they are narrower. Nothing is fused, so every target gives the same bits.
 using Lanes [[gnu::vector_size(64)]] = double;
 
-using Stored [[gnu::vector_size(64), gnu::aligned(8), gnu::may_alias]] = double;
-
-HWY_INLINE const Stored& load(const double* p) {
-  return *reinterpret_cast<const Stored*>(p);
+HWY_INLINE Lanes load(const double* p) {
+  Lanes x;
+  std::memcpy(&x, p, sizeof x);
+  return x;
 }
 HWY_INLINE void store(const Lanes& x, double* p) {
-  *reinterpret_cast<Stored*>(p) = x;
+  std::memcpy(p, &x, sizeof x);
 }
 HWY_INLINE double sum_of(const Lanes& x) {
   return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
