@@ -5,13 +5,12 @@
 #include <span>
 
 #include "bezel/numeric/vec.hpp"
+#include "bezel/transfer/lanes.hpp"
 
 namespace bezel::detail {
 
-/// Points per block; arrays are padded to whole blocks with weight 0.
-inline constexpr std::size_t lanes = 8;
-
-/// Structure of arrays of quadrature points; every array holds blocks * lanes values.
+/// Structure of arrays of quadrature points; every array holds blocks * lanes values, padded with
+/// weight 0.
 struct PointBlock {
   const double* weight;
   const double *target_u, *target_v;  ///< barycentrics 1 and 2 in the target polynomial's triangle

@@ -160,11 +160,11 @@ void ElementTransfer::give_strips(std::int32_t t, const ElementPieces& own, std:
   }
 }
 
-// Closed to far less than either element's width, 2 area / size: the usual case.
+// The usual case.
 bool ElementTransfer::is_closed(std::int32_t t, std::int32_t d, double gap) const {
   const auto closed = [gap](const OverlayMesh& mesh, std::int32_t e) {
     const auto i = static_cast<std::size_t>(e);
-    return gap * mesh.element_diameter[i] <= 2.0 * largest_joint_gap * mesh.element_area[i];
+    return closes(gap, mesh.element_diameter[i], mesh.element_area[i]);
   };
   return closed(target_, t) && (d == exterior || closed(donor_, d));
 }

@@ -14,6 +14,11 @@ inline constexpr int inexact_extra = 4;
 /// there.
 inline constexpr double largest_joint_gap = 1e-10;
 
+/// Whether a region's joints are closed to far less than an element's width, 2 area / size.
+inline bool closes(double gap, double size, double area) {
+  return gap * size <= 2.0 * largest_joint_gap * area;
+}
+
 /// A point of an element and the derivatives of its map.
 struct MapPoint {
   Vec2 x, du, dv;
@@ -34,7 +39,7 @@ void ElementTransfer::reference_fan(const OverlayMesh& mesh, std::int32_t elemen
                                     const Visit& visit) {
   const IntervalRule& radial = rule((degree + 3) / 2);
   const std::size_t count = nodes_.size() * radial.node.size();
-  const std::size_t blocks = (count + lanes - 1) / lanes;
+  const std::size_t blocks = padded_to_lanes(count) / lanes;
   reserve_points(count);
   for (std::vector<double>* array : {&fan_w_, &fan_u_, &fan_v_, &fan_x_, &fan_y_, &fan_det_})
     if (array->size() < blocks * lanes) array->resize(2 * blocks * lanes);

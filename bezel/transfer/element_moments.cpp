@@ -66,17 +66,6 @@ Vec2 to_barycentric(const Frame& frame, const Vec2& x) {
   return {{dot(frame.gradient[1], x), dot(frame.gradient[2], x)}};
 }
 
-TargetPlace place_of(const Frame& frame) {
-  const Vec2 &first = frame.gradient[1], &second = frame.gradient[2];
-  const double area = 1.0 / cross(first, second);
-  return {frame.centre,
-          first,
-          second,
-          Vec2{{second[1] * area, -second[0] * area}},
-          Vec2{{-first[1] * area, first[0] * area}},
-          area};
-}
-
 }  // namespace
 
 ElementTransfer::RunShape ElementTransfer::run_shape(std::span<const Segment> run) {
@@ -143,17 +132,14 @@ void ElementTransfer::add_pair_moments(const Group& g, std::int32_t t, std::int3
   const auto size = static_cast<std::size_t>(bernstein::triangle_size(2 * degree));
   moments_.resize(size);
   region_moments(2 * degree, moment_pieces_, moments_.data());
-  const double scale = 1.0 / cross(target.gradient[1], target.gradient[2]);
-  for (double& m : moments_) m *= scale;
+  const TargetPlace in_plane = place_of(target);
+  for (double& m : moments_) m *= in_plane.area;
 
   RegionPlace place;
   const Vec2 in_target = to_barycentric(target, (origin_ - target.centre) + shape.relative);
   const Vec2 in_donor = to_barycentric(donor, (origin_ - donor.centre) + shape.relative);
-  // The inverse of the target's gradients has the columns (g2y, -g2x), (-g1y, g1x) times scale.
-  const Vec2& g1 = target.gradient[1];
-  const Vec2& g2 = target.gradient[2];
-  const Vec2 first = to_barycentric(donor, Vec2{{g2[1] * scale, -g2[0] * scale}});
-  const Vec2 second = to_barycentric(donor, Vec2{{-g1[1] * scale, g1[0] * scale}});
+  const Vec2 first = to_barycentric(donor, in_plane.along_first);
+  const Vec2 second = to_barycentric(donor, in_plane.along_second);
   place.in_target = {in_target[0], in_target[1]};
   place.in_donor = {in_donor[0], in_donor[1]};
   place.to_donor = {first[0], second[0], first[1], second[1]};
@@ -245,7 +231,6 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
               own.donors.size(), batch_);
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
   const double own_size = target_.element_diameter[static_cast<std::size_t>(t)];
-  const double own_gap = 2.0 * largest_joint_gap * own_area / own_size;
   for (std::size_t k = 0; k < own.donors.size(); ++k) {
     const std::int32_t d = own.donors[k];
     const double* sums = batch_.region(k);
@@ -259,8 +244,8 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
       const double donor_size = donor_.element_diameter[static_cast<std::size_t>(d)];
       small = donor_area < small_area * own_area;
       // The usual case, as is_closed() and note_region() have it.
-      if (!small && !loose_ && area >= 0.0 && gap <= own_gap &&
-          gap * donor_size <= 2.0 * largest_joint_gap * donor_area) {
+      if (!small && !loose_ && area >= 0.0 && closes(gap, own_size, own_area) &&
+          closes(gap, donor_size, donor_area)) {
         area_.push_back(area);
         outcome.max_joint_gap =
             std::max(outcome.max_joint_gap, gap / std::min(own_size, donor_size));

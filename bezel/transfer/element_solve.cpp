@@ -118,7 +118,7 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
   }
   const int degree = g.target_mapped ? 2 * p + 2 * (gd - 1) : 2 * p * gd + 2 * (gd - 1);
   const MassRule& points = mass_rule(degree);
-  const std::size_t count = points.weight.size(), padded = fit_padded(count);
+  const std::size_t count = points.weight.size(), padded = padded_to_lanes(count);
   scratch_.assign(6 * padded + n * (n + 1) / 2, 0.0);
   double *u = scratch_.data(), *v = u + padded, *x = v + padded, *y = x + padded, *w = y + padded;
   double *det = w + padded, *products = det + padded;
@@ -126,7 +126,7 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
     u[q] = points.place[q][0];
     v[q] = points.place[q][1];
   }
-  fit_map(MapPolynomial(gd, target_.element(t)), padded / fit_lanes, u, v, x, y, det);
+  fit_map(MapPolynomial(gd, target_.element(t)), padded / lanes, u, v, x, y, det);
   for (std::size_t q = 0; q < count; ++q) {
     w[q] = points.weight[q] * det[q];
     if (g.target_mapped) continue;

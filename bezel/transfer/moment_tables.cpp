@@ -43,7 +43,7 @@ const std::vector<double>& area_weights(int degree) {
 PieceTable::PieceTable(int degree_in, int moments)
     : degree(degree_in), points((moments * degree_in + 2 * degree_in - 2) / 2 + 1) {
   const auto n = static_cast<std::size_t>(points);
-  stride = (n + moment_lanes - 1) / moment_lanes * moment_lanes;
+  stride = padded_to_lanes(n);
   const auto functions = static_cast<std::size_t>(degree + 1);
   parameter.assign(stride, 0.0);
   weight.assign(stride, 0.0);

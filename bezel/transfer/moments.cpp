@@ -25,8 +25,8 @@ namespace bezel::detail::HWY_NAMESPACE {
 constexpr std::size_t max_points = 256;  // worked on in one sweep
 
 struct Points {
-  alignas(64) double x[max_points + moment_lanes], y[max_points + moment_lanes];
-  alignas(64) double k[max_points + moment_lanes];  // (x - c) x dx, weighted
+  alignas(64) double x[max_points + lanes], y[max_points + lanes];
+  alignas(64) double k[max_points + lanes];  // (x - c) x dx, weighted
 };
 
 /// Points of one piece at the end of the list; the padding is overwritten by the next piece's.
@@ -40,8 +40,8 @@ inline std::size_t put_points(const MomentPiece& piece, Points& to, std::size_t 
     const double ax = p[0].x(), ay = p[0].y();
     const double dx = p[1].x() - ax, dy = p[1].y() - ay;
     const double area = ax * dy - ay * dx;
-    for (std::size_t b = 0; b < table.stride; b += moment_lanes) {
-      for (std::size_t l = 0; l < moment_lanes; ++l) {
+    for (std::size_t b = 0; b < table.stride; b += lanes) {
+      for (std::size_t l = 0; l < lanes; ++l) {
         const double s = table.parameter[b + l];
         x[b + l] = ax + s * dx;
         y[b + l] = ay + s * dy;
@@ -49,21 +49,21 @@ inline std::size_t put_points(const MomentPiece& piece, Points& to, std::size_t 
       }
     }
   } else {
-    for (std::size_t b = 0; b < table.stride; b += moment_lanes) {
-      double sx[moment_lanes] = {}, sy[moment_lanes] = {};
-      double dx[moment_lanes] = {}, dy[moment_lanes] = {};
+    for (std::size_t b = 0; b < table.stride; b += lanes) {
+      double sx[lanes] = {}, sy[lanes] = {};
+      double dx[lanes] = {}, dy[lanes] = {};
       for (int i = 0; i <= table.degree; ++i) {
         const double* value = table.value.data() + static_cast<std::size_t>(i) * table.stride + b;
         const double* slope = table.slope.data() + static_cast<std::size_t>(i) * table.stride + b;
         const double px = p[i].x(), py = p[i].y();
-        for (std::size_t l = 0; l < moment_lanes; ++l) {
+        for (std::size_t l = 0; l < lanes; ++l) {
           sx[l] += value[l] * px;
           sy[l] += value[l] * py;
           dx[l] += slope[l] * px;
           dy[l] += slope[l] * py;
         }
       }
-      for (std::size_t l = 0; l < moment_lanes; ++l) {
+      for (std::size_t l = 0; l < lanes; ++l) {
         x[b + l] = sx[l];
         y[b + l] = sy[l];
         k[b + l] = sx[l] * dy[l] - sy[l] * dx[l];
@@ -75,21 +75,21 @@ inline std::size_t put_points(const MomentPiece& piece, Points& to, std::size_t 
 
 /// Adds k x^a y^b of whole blocks of points to sums[a, b][lane].
 template <int D>
-void sum_points(const Points& points, std::size_t blocks, double (*sums)[moment_lanes]) {
+void sum_points(const Points& points, std::size_t blocks, double (*sums)[lanes]) {
   for (std::size_t block = 0; block < blocks; ++block) {
-    const double* x = points.x + block * moment_lanes;
-    const double* y = points.y + block * moment_lanes;
-    double row[moment_lanes];  // k y^b
-    for (std::size_t l = 0; l < moment_lanes; ++l) row[l] = points.k[block * moment_lanes + l];
+    const double* x = points.x + block * lanes;
+    const double* y = points.y + block * lanes;
+    double row[lanes];  // k y^b
+    for (std::size_t l = 0; l < lanes; ++l) row[l] = points.k[block * lanes + l];
     int n = 0;
     for (int b = 0; b <= D; ++b) {
-      double term[moment_lanes];
-      for (std::size_t l = 0; l < moment_lanes; ++l) term[l] = row[l];
+      double term[lanes];
+      for (std::size_t l = 0; l < lanes; ++l) term[l] = row[l];
       for (int a = 0; a <= D - b; ++a, ++n) {
-        for (std::size_t l = 0; l < moment_lanes; ++l) sums[n][l] += term[l];
-        for (std::size_t l = 0; l < moment_lanes; ++l) term[l] *= x[l];
+        for (std::size_t l = 0; l < lanes; ++l) sums[n][l] += term[l];
+        for (std::size_t l = 0; l < lanes; ++l) term[l] *= x[l];
       }
-      for (std::size_t l = 0; l < moment_lanes; ++l) row[l] *= y[l];
+      for (std::size_t l = 0; l < lanes; ++l) row[l] *= y[l];
     }
   }
 }
@@ -97,12 +97,12 @@ void sum_points(const Points& points, std::size_t blocks, double (*sums)[moment_
 template <int D>
 void region_moments_of(std::span<const MomentPiece> pieces, double* moments) {
   constexpr int size = bernstein::triangle_size(D);
-  alignas(64) double sums[size][moment_lanes] = {};
+  alignas(64) double sums[size][lanes] = {};
   Points points;
   std::size_t count = 0;
   const auto flush = [&] {
-    const std::size_t blocks = (count + moment_lanes - 1) / moment_lanes;
-    for (std::size_t i = count; i < blocks * moment_lanes; ++i)
+    const std::size_t blocks = padded_to_lanes(count) / lanes;
+    for (std::size_t i = count; i < blocks * lanes; ++i)
       points.x[i] = points.y[i] = points.k[i] = 0.0;
     sum_points<D>(points, blocks, sums);
     count = 0;

@@ -14,6 +14,7 @@
 
 #include "bezel/field/space.hpp"
 #include "bezel/numeric/vec.hpp"
+#include "bezel/transfer/lanes.hpp"
 
 namespace bezel::detail {
 
@@ -22,9 +23,6 @@ inline constexpr int max_moment_degree = 3;
 
 /// Highest degree of power_matrix and powers_from_moments.
 inline constexpr int max_power_degree = 10;
-
-/// Points that are worked on together.
-inline constexpr std::size_t moment_lanes = 8;
 
 /// Gauss points on a Bezier piece, for all monomials up to a degree.
 struct PieceTable {

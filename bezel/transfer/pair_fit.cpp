@@ -1,4 +1,5 @@
 #include "bezel/transfer/pair_fit.hpp"
+#include "bezel/transfer/piece_batch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -79,7 +80,7 @@ bool inside(const CurvePoints& points) {
 
 /// Fills the last block up with points that count nothing.
 void pad(CurvePoints& points) {
-  const std::size_t count = points.count, whole = fit_padded(count);
+  const std::size_t count = points.count, whole = padded_to_lanes(count);
   for (std::size_t i = count; i < whole; ++i) {
     points.x[i] = points.x[count - 1];
     points.y[i] = points.y[count - 1];
@@ -98,7 +99,7 @@ bool PairFit::can(const Group& g, const OverlayMesh& donor, const OverlayMesh& t
   if (!g.donor_mapped && !g.target_mapped && std::max(pd, pt) > max_plane_degree) return false;
   const int k = target_degree(g, target, pt);
   const int m = fit_degree(g, target, pd);
-  return m <= max_fit_degree && k < static_cast<int>(2 * fit_lanes) && m + k <= max_fit_moments &&
+  return m <= max_fit_degree && k < static_cast<int>(2 * lanes) && m + k <= max_fit_moments &&
          (!g.donor_mapped || mass_degree(donor, pd) <= max_fit_degree);
 }
 
@@ -110,7 +111,7 @@ void PairFit::reserve(const FitTable& table, std::size_t components, int moments
     grow(*array, table.padded);
   grow(values_, components * table.padded);
   grow(terms_, components * table.terms);
-  grow(moments_, fit_rows(moments) + 2 * fit_lanes);
+  grow(moments_, fit_rows(moments) + 2 * lanes);
 }
 
 const PairFit::Rule& PairFit::rule(int points) {
@@ -120,11 +121,11 @@ const PairFit::Rule& PairFit::rule(int points) {
   if (made.count == 0) {
     const IntervalRule gauss = gauss_legendre(points);
     made.count = n;
-    made.blocks = fit_padded(n) / fit_lanes;
+    made.blocks = padded_to_lanes(n) / lanes;
     made.node.assign(gauss.node.begin(), gauss.node.end());
     made.weight.assign(gauss.weight.begin(), gauss.weight.end());
-    made.node.resize(fit_padded(n), gauss.node.back());
-    made.weight.resize(fit_padded(n), 0.0);
+    made.node.resize(padded_to_lanes(n), gauss.node.back());
+    made.weight.resize(padded_to_lanes(n), 0.0);
   }
   return made;
 }
@@ -158,7 +159,7 @@ std::size_t PairFit::append_curve(std::span<const Vec2> control, const Part& par
                                   const Vec2& origin, int points, CurvePoints& to) {
   const Rule& line = rule(points);
   const std::size_t first = to.append(line.count);
-  to.append(line.blocks * fit_lanes - line.count);  // written, then given back
+  to.append(line.blocks * lanes - line.count);  // written, then given back
   to.count = first + line.count;
   fit_curve(control, origin, part.from, part.to - part.from, line.blocks, line.node.data(),
             line.weight.data(), to.x.data() + first, to.y.data() + first, to.dx.data() + first,
@@ -172,11 +173,8 @@ void PairFit::make_target_map() {
     centre_ = {1.0 / 3.0, 1.0 / 3.0};
     return;
   }
-  const Frame& frame = g_->target_frame[static_cast<std::size_t>(t_)];
-  const Vec2 &first = frame.gradient[1], &second = frame.gradient[2];
-  const double area = 1.0 / cross(first, second);
-  target_map_.set_affine(frame.centre, Vec2{{second[1] * area, -second[0] * area}},
-                         Vec2{{-first[1] * area, first[0] * area}});
+  const TargetPlace place = place_of(g_->target_frame[static_cast<std::size_t>(t_)]);
+  target_map_.set_affine(place.centre, place.along_first, place.along_second);
   centre_ = {0.0, 0.0};
 }
 
@@ -244,9 +242,9 @@ void PairFit::make_target_points(std::span<const Segment> segments) {
   ready_ = true;
   if (pulled_.count == 0) return;
   pad(pulled_);
-  const std::size_t whole = fit_padded(pulled_.count);
+  const std::size_t whole = padded_to_lanes(pulled_.count);
   if (mapped) {
-    ready_ = fit_invert(target_map_, whole / fit_lanes, pulled_.x.data(), pulled_.y.data(),
+    ready_ = fit_invert(target_map_, whole / lanes, pulled_.x.data(), pulled_.y.data(),
                         pulled_.x.data(), pulled_.y.data(), pulled_.dx.data(), pulled_.dy.data()) &&
              inside(pulled_);
     return;
@@ -301,8 +299,7 @@ const PairFit::Donor& PairFit::donor_of(std::int32_t d) {
     u_[q] = 1.0 / 3.0 + reference_half * table.x[q];
     v_[q] = 1.0 / 3.0 + reference_half * table.y[q];
   }
-  fit_map(donor.map, table.padded / fit_lanes, u_.data(), v_.data(), x_.data(), y_.data(),
-          det_.data());
+  fit_map(donor.map, table.padded / lanes, u_.data(), v_.data(), x_.data(), y_.data(), det_.data());
   fit_values(pd, g_->components, g_->donor_scaled(d).data(), donor.mean.data(), table.padded,
              u_.data(), v_.data(), values_.data());
   for (std::size_t c = 0; c < nc; ++c)
@@ -323,8 +320,8 @@ const PairFit::Donor& PairFit::donor_of(std::int32_t d) {
 // Fills in du_, dv_ from the points x_, y_ in the plane.
 bool PairFit::donor_places(std::int32_t d, std::size_t padded) {
   if (g_->donor_mapped)
-    return fit_invert(donor_of(d).map, padded / fit_lanes, x_.data(), y_.data(), du_.data(),
-                      dv_.data(), nullptr, nullptr);
+    return fit_invert(donor_of(d).map, padded / lanes, x_.data(), y_.data(), du_.data(), dv_.data(),
+                      nullptr, nullptr);
   const Frame& frame = g_->donor_frame[static_cast<std::size_t>(d)];
   const Vec2 &a = frame.gradient[1], &b = frame.gradient[2];
   for (std::size_t q = 0; q < padded; ++q) {
@@ -344,8 +341,7 @@ bool PairFit::place_points(std::int32_t d, int m, int p, const FitFrame& frame) 
     u_[q] = frame.centre[0] + frame.half[0] * table.x[q];
     v_[q] = frame.centre[1] + frame.half[1] * table.y[q];
   }
-  fit_map(target_map_, table.padded / fit_lanes, u_.data(), v_.data(), x_.data(), y_.data(),
-          nullptr);
+  fit_map(target_map_, table.padded / lanes, u_.data(), v_.data(), x_.data(), y_.data(), nullptr);
   if (!donor_places(d, table.padded)) return false;
   if (!g_->donor_mapped || p == 0) return true;
   const auto tails = fit_tails(table, du_.data(), dv_.data());
@@ -416,7 +412,7 @@ void PairFit::donor_mass(const Donor& donor, std::size_t begin, std::size_t end,
   if (boundary_.count > 0) {
     pad(boundary_);
     double *x = boundary_.x.data(), *y = boundary_.y.data();
-    if (!fit_invert(donor.map, fit_padded(boundary_.count) / fit_lanes, x, y, x, y,
+    if (!fit_invert(donor.map, padded_to_lanes(boundary_.count) / lanes, x, y, x, y,
                     boundary_.dx.data(), boundary_.dy.data()) ||
         !inside(boundary_)) {
       boundary_.clear();
@@ -520,8 +516,7 @@ void PairFit::take(double* product, double* basis) {
   const int e = k - p;
   std::vector<double>& det = terms_;
   if (e == 0) {
-    det.assign(fit_lanes,
-               target_map_.x[1] * target_map_.y[2] - target_map_.x[2] * target_map_.y[1]);
+    det.assign(lanes, target_map_.x[1] * target_map_.y[2] - target_map_.x[2] * target_map_.y[1]);
   } else {
     const FitTable& table = fit_table(e);
     reserve(table, 1, 0);
@@ -529,7 +524,7 @@ void PairFit::take(double* product, double* basis) {
       u_[q] = centre_[0] + reference_half * table.x[q];
       v_[q] = centre_[1] + reference_half * table.y[q];
     }
-    fit_map(target_map_, table.padded / fit_lanes, u_.data(), v_.data(), x_.data(), y_.data(),
+    fit_map(target_map_, table.padded / lanes, u_.data(), v_.data(), x_.data(), y_.data(),
             det_.data());
     fit_interpolate(table, 1, det_.data(), det.data());
     double scale = 1.0;

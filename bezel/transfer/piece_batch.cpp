@@ -19,6 +19,7 @@
 #include "hwy/highway.h"
 // clang-format on
 #include "bezel/transfer/polynomial_moves.hpp"
+#include "bezel/transfer/vector_lanes.hpp"
 
 #ifndef BEZEL_TRANSFER_PIECE_BATCH_ONCE
 #define BEZEL_TRANSFER_PIECE_BATCH_ONCE
@@ -28,26 +29,13 @@ namespace bezel::detail {
 inline constexpr double steepest = 32.0;
 /// Of the matrices' rows, padded.
 inline constexpr std::size_t most_blocks =
-    (bernstein::triangle_size(2 * max_moment_degree) + moment_lanes - 1) / moment_lanes;
+    padded_to_lanes(static_cast<std::size_t>(bernstein::triangle_size(2 * max_moment_degree))) /
+    lanes;
 }  // namespace bezel::detail
 #endif
 
 HWY_BEFORE_NAMESPACE();
 namespace bezel::detail::HWY_NAMESPACE {
-
-// Eight pieces, or eight regions, side by side: the compiler's vectors (g++ and clang), split into
-// registers where they are narrower.
-using Lanes [[gnu::vector_size(64)]] = double;
-
-HWY_INLINE void load(const double* p, Lanes& x) {
-  std::memcpy(&x, p, sizeof x);
-}
-HWY_INLINE void store(const Lanes& x, double* p) {
-  std::memcpy(p, &x, sizeof x);
-}
-HWY_INLINE double sum_of(const Lanes& x) {
-  return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
-}
 
 /// Points of the blossom with k parameters s and the others r, k = 0 .. G: the part's control
 /// points.
@@ -102,13 +90,13 @@ template <int G>
 HWY_INLINE void local_control(const PieceBatch& batch, std::size_t block, const TargetPlace& place,
                               Lanes* a, Lanes* b) {
   Lanes from, to, u[G + 1], v[G + 1];
-  load(batch.from.data() + block, from);
-  load(batch.to.data() + block, to);
+  from = load(batch.from.data() + block);
+  to = load(batch.to.data() + block);
 #pragma GCC unroll 4
   for (int i = 0; i <= G; ++i) {
     Lanes x, y;
-    load(batch.x.data() + static_cast<std::size_t>(i) * batch.stride + block, x);
-    load(batch.y.data() + static_cast<std::size_t>(i) * batch.stride + block, y);
+    x = load(batch.x.data() + static_cast<std::size_t>(i) * batch.stride + block);
+    y = load(batch.y.data() + static_cast<std::size_t>(i) * batch.stride + block);
     x -= place.centre.x();
     y -= place.centre.y();
     u[i] = place.first.x() * x + place.first.y() * y;
@@ -121,16 +109,15 @@ HWY_INLINE void local_control(const PieceBatch& batch, std::size_t block, const 
 /// Numbers per piece and region with moments up to degree D: these, the step, the area of curved
 /// pieces, and padding.
 template <int G, int D>
-constexpr std::size_t width_of = (static_cast<std::size_t>(bernstein::triangle_size(D)) +
-                                  (G == 1 ? 2 : 3) + moment_lanes - 1) /
-                                 moment_lanes* moment_lanes;
+constexpr std::size_t width_of =
+    padded_to_lanes(static_cast<std::size_t>(bernstein::triangle_size(D)) + (G == 1 ? 2 : 3));
 
 template <int G, int D>
 void piece_moments_of(const PieceTable& table, const std::vector<double>& weights,
                       const Vec2& origin, const TargetPlace& place, PieceBatch& batch) {
   constexpr std::size_t size = static_cast<std::size_t>(bernstein::triangle_size(D));
   constexpr std::size_t width = width_of<G, D>;
-  for (std::size_t block = 0; block < batch.stride; block += moment_lanes) {
+  for (std::size_t block = 0; block < batch.stride; block += lanes) {
     Lanes a[G + 1], b[G + 1];
     local_control<G>(batch, block, place, a, b);
     Lanes sums[width] = {};
@@ -195,10 +182,10 @@ void piece_moments_of(const PieceTable& table, const std::vector<double>& weight
     }
     double* out = batch.moments.data() + block * width;
 #pragma GCC unroll 4
-    for (std::size_t m = 0; m < width; m += moment_lanes) {
+    for (std::size_t m = 0; m < width; m += lanes) {
       transpose(sums + m);
 #pragma GCC unroll 8
-      for (std::size_t l = 0; l < moment_lanes; ++l) store(sums[m + l], out + l * width + m);
+      for (std::size_t l = 0; l < lanes; ++l) store(sums[m + l], out + l * width + m);
     }
   }
 }
@@ -214,13 +201,13 @@ void sum_pieces(std::span<const BoundaryPiece> pieces, std::size_t regions, Piec
                         ? nullptr
                         : batch.sums.data() + static_cast<std::size_t>(piece.right) * width;
 #pragma GCC unroll 4
-    for (std::size_t m = 0; m < width; m += moment_lanes) {
+    for (std::size_t m = 0; m < width; m += lanes) {
       Lanes moments, sum;
-      load(row + m, moments);
-      load(left + m, sum);
+      moments = load(row + m);
+      sum = load(left + m);
       store(sum + moments, left + m);
       if (right == nullptr) continue;
-      load(right + m, sum);
+      sum = load(right + m);
       store(sum - moments, right + m);
     }
     row += width;
@@ -273,7 +260,7 @@ HWY_INLINE void raise(Lanes& x, const Lanes& y) {
   x = x < -y ? -y : x;
 }
 
-alignas(64) constexpr double zeros[2 * moment_lanes] = {};
+alignas(64) constexpr double zeros[2 * lanes] = {};
 
 /// At most eight regions, one in each lane; the first is number `number` of the batch.
 template <int P>
@@ -281,21 +268,21 @@ void add_regions(const TargetPlace& place, const PieceBatch& batch, std::size_t 
                  std::span<BatchRegion> regions, int components, const double* base,
                  Lanes* total_basis, double* product, double* mass) {
   constexpr int size = bernstein::triangle_size(P), twice = bernstein::triangle_size(2 * P);
-  constexpr std::size_t rows = (twice + moment_lanes - 1) / moment_lanes * moment_lanes;
-  constexpr std::size_t donor_rows = (size + moment_lanes - 1) / moment_lanes * moment_lanes;
+  constexpr std::size_t rows = padded_to_lanes(static_cast<std::size_t>(twice));
+  constexpr std::size_t donor_rows = padded_to_lanes(static_cast<std::size_t>(size));
   static_assert(sizeof(Frame) == sizeof(Lanes));
 
   Lanes moments[rows];
-  alignas(64) double keep[moment_lanes] = {};
+  alignas(64) double keep[lanes] = {};
 #pragma GCC unroll 4
-  for (std::size_t m = 0; m < rows; m += moment_lanes) {
-    for (std::size_t l = 0; l < moment_lanes; ++l)
-      load(l < regions.size() ? batch.region(number + l) + m : zeros, moments[m + l]);
+  for (std::size_t m = 0; m < rows; m += lanes) {
+    for (std::size_t l = 0; l < lanes; ++l)
+      moments[m + l] = load(l < regions.size() ? batch.region(number + l) + m : zeros);
     transpose(moments + m);
   }
   // The donors' coordinates: centre x, y, then the gradients of the three barycentrics.
-  Lanes frame[moment_lanes];
-  for (std::size_t l = 0; l < moment_lanes; ++l) {
+  Lanes frame[lanes];
+  for (std::size_t l = 0; l < lanes; ++l) {
     const bool has = l < regions.size() && regions[l].donor != nullptr;
     keep[l] = has ? 1.0 : 0.0;
     if (has)
@@ -318,7 +305,7 @@ void add_regions(const TargetPlace& place, const PieceBatch& batch, std::size_t 
   Lanes power = Lanes{} + 1.0;
   for (int e = 0; e < P; ++e) power *= steep;
   Lanes kept;
-  load(keep, kept);
+  kept = load(keep);
   const auto near = (power <= steepest) & (kept > 0.0);
   const Lanes none{};
   for (Lanes& x : m) x = near ? x : none;
@@ -339,10 +326,10 @@ void add_regions(const TargetPlace& place, const PieceBatch& batch, std::size_t 
   for (int c = 0; c < components; ++c) {
     Lanes f[donor_rows];
 #pragma GCC unroll 2
-    for (std::size_t r = 0; r < donor_rows; r += moment_lanes) {
-      for (std::size_t l = 0; l < moment_lanes; ++l) {
+    for (std::size_t r = 0; r < donor_rows; r += lanes) {
+      for (std::size_t l = 0; l < lanes; ++l) {
         const bool has = l < regions.size() && regions[l].donor != nullptr;
-        load(has ? regions[l].donor + static_cast<std::size_t>(c * size) + r : zeros, f[r + l]);
+        f[r + l] = load(has ? regions[l].donor + static_cast<std::size_t>(c * size) + r : zeros);
       }
       transpose(f + r);
     }
@@ -365,18 +352,18 @@ void add_regions(const TargetPlace& place, const PieceBatch& batch, std::size_t 
         sums[at(P, a, b)] = sum;
       }
     }
-    alignas(64) double masses[moment_lanes];
+    alignas(64) double masses[lanes];
     store(sums[0] + base[c] * moments[0], masses);
     for (std::size_t l = 0; l < regions.size(); ++l)
       mass[l * static_cast<std::size_t>(components) + static_cast<std::size_t>(c)] = masses[l];
 #pragma GCC unroll 2
-    for (std::size_t r = 0; r < donor_rows; r += moment_lanes) {
+    for (std::size_t r = 0; r < donor_rows; r += lanes) {
       transpose(sums + r);
-      alignas(64) double totals[moment_lanes];
+      alignas(64) double totals[lanes];
       store(((sums[r] + sums[r + 4]) + (sums[r + 2] + sums[r + 6])) +
                 ((sums[r + 1] + sums[r + 5]) + (sums[r + 3] + sums[r + 7])),
             totals);
-      for (std::size_t n = r; n < std::min<std::size_t>(r + moment_lanes, size); ++n)
+      for (std::size_t n = r; n < std::min<std::size_t>(r + lanes, size); ++n)
         product[n * static_cast<std::size_t>(components) + static_cast<std::size_t>(c)] +=
             totals[n - r];
     }
@@ -389,8 +376,8 @@ void add_batch_of(const TargetPlace& place, const PieceBatch& batch, std::span<B
                   double* mass) {
   constexpr int size = bernstein::triangle_size(P);
   Lanes total[size] = {};
-  for (std::size_t first = 0; first < regions.size(); first += moment_lanes) {
-    const std::size_t count = std::min(moment_lanes, regions.size() - first);
+  for (std::size_t first = 0; first < regions.size(); first += lanes) {
+    const std::size_t count = std::min(lanes, regions.size() - first);
     add_regions<P>(place, batch, first, regions.subspan(first, count), components, base, total,
                    product, mass + first * static_cast<std::size_t>(components));
   }
@@ -419,14 +406,14 @@ void apply_matrix_target(std::size_t size, std::size_t padded, const double* mat
     Lanes sums[most_blocks] = {};
     for (std::size_t m = 0; m < size; ++m) {
       const double value = x[m * components + c];
-      for (std::size_t b = 0; b < padded / moment_lanes; ++b) {
+      for (std::size_t b = 0; b < padded / lanes; ++b) {
         Lanes row;
-        load(matrix + m * padded + b * moment_lanes, row);
+        row = load(matrix + m * padded + b * lanes);
         sums[b] += value * row;
       }
     }
-    double result[most_blocks * moment_lanes];
-    for (std::size_t b = 0; b < most_blocks; ++b) store(sums[b], result + b * moment_lanes);
+    double result[most_blocks * lanes];
+    for (std::size_t b = 0; b < most_blocks; ++b) store(sums[b], result + b * lanes);
     for (std::size_t n = 0; n < size; ++n) y[n * components + c] += result[n];
   }
 }
@@ -448,7 +435,7 @@ double solve_straight_of(const StraightSystem& system, const double* matrix, dou
 #pragma GCC unroll 2
       for (std::size_t b = 0; b < blocks; ++b) {
         Lanes row;
-        load(matrix + (m * blocks + b) * moment_lanes, row);
+        row = load(matrix + (m * blocks + b) * lanes);
         x[b] += value * row;
       }
     }
@@ -456,9 +443,9 @@ double solve_straight_of(const StraightSystem& system, const double* matrix, dou
     if constexpr (blocks > 1) sum += sum_of(x[1]);
     const double got = sum * per_function + mean * system.area;
     const double shift = mean + (mass - got) / system.area;
-    double values[blocks * moment_lanes];
+    double values[blocks * lanes];
 #pragma GCC unroll 2
-    for (std::size_t b = 0; b < blocks; ++b) store(x[b] + shift, values + b * moment_lanes);
+    for (std::size_t b = 0; b < blocks; ++b) store(x[b] + shift, values + b * lanes);
     sum = 0.0;
     for (std::size_t n = 0; n < size; ++n) {
       coefficients[n * nc + c] = values[n];
@@ -486,9 +473,7 @@ namespace {
 struct PaddedMatrix {
   PaddedMatrix() = default;
   PaddedMatrix(std::size_t size_in, const std::vector<double>& matrix)
-      : size(size_in),
-        padded((size + moment_lanes - 1) / moment_lanes * moment_lanes),
-        rows(size * padded, 0.0) {
+      : size(size_in), padded(padded_to_lanes(size)), rows(size * padded, 0.0) {
     for (std::size_t n = 0; n < size; ++n)
       for (std::size_t m = 0; m < size; ++m) rows[m * padded + n] = matrix[n * size + m];
   }
@@ -557,7 +542,7 @@ HWY_EXPORT(add_batch_target);
 
 void PieceBatch::resize(std::size_t pieces, int degree) {
   count = pieces;
-  const std::size_t needed = (pieces + moment_lanes - 1) / moment_lanes * moment_lanes;
+  const std::size_t needed = padded_to_lanes(pieces);
   stride = needed;
   const auto points = static_cast<std::size_t>(degree + 1);
   if (from.size() < needed) {

@@ -18,6 +18,17 @@ struct TargetPlace {
   double area;                     ///< of the plane per unit of the coordinates
 };
 
+inline TargetPlace place_of(const Frame& frame) {
+  const Vec2 &first = frame.gradient[1], &second = frame.gradient[2];
+  const double area = 1.0 / cross(first, second);
+  return {frame.centre,
+          first,
+          second,
+          Vec2{{second[1] * area, -second[0] * area}},
+          Vec2{{-first[1] * area, first[0] * area}},
+          area};
+}
+
 inline constexpr int max_batch_degree = 3;  ///< of the pieces
 
 /// The boundary pieces of one target element and what they add up to.

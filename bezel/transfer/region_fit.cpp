@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <memory>
-#include <mutex>
-#include <numbers>
 #include <type_traits>
 
 #include "bezel/bernstein/index.hpp"
@@ -19,17 +16,17 @@
 // clang-format off
 #include "hwy/highway.h"
 // clang-format on
+#include "bezel/transfer/vector_lanes.hpp"
 
 #ifndef BEZEL_TRANSFER_REGION_FIT_ONCE
 #define BEZEL_TRANSFER_REGION_FIT_ONCE
 namespace bezel::detail {
-inline constexpr int max_fit_map = 10;     // degree of a map
 inline constexpr int max_fit_powers = 10;  // degree of a field
-inline constexpr std::size_t max_fit_vectors = fit_stride(max_fit_moments) / fit_lanes;
+inline constexpr std::size_t max_fit_vectors = fit_stride(max_fit_moments) / lanes;
 
 /// 1 / (a + b + 2) in rows as wide as those of the highest degree.
 struct FitDivisors {
-  double value[max_fit_moments + 1][max_fit_vectors * fit_lanes];
+  double value[max_fit_moments + 1][max_fit_vectors * lanes];
 };
 inline const FitDivisors& fit_divisors() {
   static const FitDivisors table = [] {
@@ -43,27 +40,8 @@ inline const FitDivisors& fit_divisors() {
 }  // namespace bezel::detail
 #endif
 
-// load() is always inlined: how a vector is returned does not matter.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 HWY_BEFORE_NAMESPACE();
 namespace bezel::detail::HWY_NAMESPACE {
-
-// Eight numbers side by side: the compiler's vectors (g++ and clang), split into registers where
-// they are narrower. Nothing is fused, so every target gives the same bits.
-using Lanes [[gnu::vector_size(64)]] = double;
-
-HWY_INLINE Lanes load(const double* p) {
-  Lanes x;
-  std::memcpy(&x, p, sizeof x);
-  return x;
-}
-HWY_INLINE void store(const Lanes& x, double* p) {
-  std::memcpy(p, &x, sizeof x);
-}
-HWY_INLINE double sum_of(const Lanes& x) {
-  return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
-}
 
 /// Value and derivatives of sum c[a, b] u^a v^b. G: the degree when known at compile time, or -1.
 template <int G>
@@ -90,7 +68,7 @@ HWY_INLINE void horner(int degree, const double* c, const Lanes& u, const Lanes&
 template <int G>
 void map_of(const MapPolynomial& map, std::size_t blocks, const double* u, const double* v,
             double* x, double* y, double* det) {
-  for (std::size_t at = 0; at < blocks * fit_lanes; at += fit_lanes) {
+  for (std::size_t at = 0; at < blocks * lanes; at += lanes) {
     const Lanes s = load(u + at) - map.centre, t = load(v + at) - map.centre;
     Lanes px, py, xu, xv, yu, yv;
     horner<G>(map.degree, map.x.data(), s, t, px, xu, xv);
@@ -116,8 +94,8 @@ HWY_INLINE bool invert_blocks(const MapPolynomial& map, const double* x, const d
   const double scale = 1.0 / det0;
   Lanes px[B], py[B], s[B], t[B], wx[B], wy[B], xu[B], xv[B], yu[B], yv[B];
   for (std::size_t i = 0; i < B; ++i) {
-    px[i] = load(x + i * fit_lanes) - map.base.x();
-    py[i] = load(y + i * fit_lanes) - map.base.y();
+    px[i] = load(x + i * lanes) - map.base.x();
+    py[i] = load(y + i * lanes) - map.base.y();
     s[i] = (px[i] * yv0 - py[i] * xv0) * scale;
     t[i] = (py[i] * xu0 - px[i] * yu0) * scale;
   }
@@ -142,7 +120,7 @@ HWY_INLINE bool invert_blocks(const MapPolynomial& map, const double* x, const d
   }
   if (!done) return false;
   for (std::size_t i = 0; i < B; ++i) {
-    const std::size_t at = i * fit_lanes;
+    const std::size_t at = i * lanes;
     store(s[i] + map.centre, u + at);
     store(t[i] + map.centre, v + at);
     if (dx == nullptr) continue;
@@ -162,11 +140,11 @@ bool invert_of(const MapPolynomial& map, std::size_t blocks, const double* x, co
   const auto from = [](double* p, std::size_t at) { return p == nullptr ? nullptr : p + at; };
   std::size_t block = 0;
   for (; block + 2 <= blocks; block += 2) {
-    const std::size_t at = block * fit_lanes;
+    const std::size_t at = block * lanes;
     if (!invert_blocks<G, 2>(map, x + at, y + at, u + at, v + at, from(dx, at), from(dy, at)))
       return false;
   }
-  const std::size_t at = block * fit_lanes;
+  const std::size_t at = block * lanes;
   return block == blocks ||
          invert_blocks<G, 1>(map, x + at, y + at, u + at, v + at, from(dx, at), from(dy, at));
 }
@@ -192,7 +170,7 @@ HWY_INLINE void curve_of(int degree, const double* px, const double* py, double 
                          std::size_t blocks, const double* node, const double* weight, double* x,
                          double* y, double* dx, double* dy) {
   const int g = G > 0 ? G : degree;
-  for (std::size_t at = 0; at < blocks * fit_lanes; at += fit_lanes) {
+  for (std::size_t at = 0; at < blocks * lanes; at += lanes) {
     const Lanes r = from + step * load(node + at), left = 1.0 - r;
     const Lanes scale = (g * step) * load(weight + at);
     Lanes a[(G > 0 ? G : max_fit_map) + 1], b[(G > 0 ? G : max_fit_map) + 1];
@@ -251,7 +229,7 @@ HWY_INLINE void add_four(int degree, const double* x, const double* y, const dou
   }
   for (int b = 0; b <= degree; ++b, sums += wide) {
     for (std::size_t w = 0; w < wide; ++w) {
-      if (static_cast<int>(w * fit_lanes) > degree - b) break;
+      if (static_cast<int>(w * lanes) > degree - b) break;
       Lanes sum = sums[w];
       for (std::size_t i = 0; i < four; ++i) sum += term[i] * powers[i][w];
       sums[w] = sum;
@@ -267,10 +245,10 @@ void moments_of(int degree, const double* x, const double* y, const double* dx, 
   Lanes sums[(max_fit_moments + 1) * wide];
   for (std::size_t i = 0; i < static_cast<std::size_t>(degree + 1) * wide; ++i) sums[i] = Lanes{};
   const double sx = 1.0 / frame.half[0], sy = 1.0 / frame.half[1];
-  for (std::size_t at = 0; at < count; at += fit_lanes) {
+  for (std::size_t at = 0; at < count; at += lanes) {
     const Lanes px = (load(x + at) - frame.centre[0]) * sx;
     const Lanes py = (load(y + at) - frame.centre[1]) * sy;
-    double own_x[fit_lanes], own_y[fit_lanes], k[fit_lanes];
+    double own_x[lanes], own_y[lanes], k[lanes];
     store(px, own_x);
     store(py, own_y);
     store(px * (load(dy + at) * sy) - py * (load(dx + at) * sx), k);
@@ -280,7 +258,7 @@ void moments_of(int degree, const double* x, const double* y, const double* dx, 
   for (int b = 0; b <= degree; ++b) {
     for (std::size_t w = 0; w < wide; ++w) {
       const std::size_t at = static_cast<std::size_t>(b) * wide + w;
-      store(sums[at] * load(divisors.value[b] + w * fit_lanes), moments + at * fit_lanes);
+      store(sums[at] * load(divisors.value[b] + w * lanes), moments + at * lanes);
     }
   }
 }
@@ -316,7 +294,7 @@ void values_of(int degree, int components, const double* scaled, const double* m
                std::size_t padded, const double* u, const double* v, double* values) {
   const int size = bernstein::triangle_size(fixed >= 0 ? fixed : degree);
   Lanes psi[bernstein::triangle_size(fixed >= 0 ? fixed : max_fit_powers)];
-  for (std::size_t at = 0; at < padded; at += fit_lanes) {
+  for (std::size_t at = 0; at < padded; at += lanes) {
     const Lanes s = load(u + at), t = load(v + at);
     powers_of<fixed>(degree, s, t, psi);
     for (int c = 0; c < components; ++c) {
@@ -340,7 +318,7 @@ void values_target(int degree, int components, const double* scaled, const doubl
 /// Two functions at once.
 void tails_target(std::size_t count, std::size_t high, const double* matrix, const double* u,
                   const double* v, double* out) {
-  for (std::size_t n = 0; n < high; n += fit_lanes) {
+  for (std::size_t n = 0; n < high; n += lanes) {
     Lanes first{}, second{};
     for (std::size_t q = 0; q < count; ++q) {
       const Lanes row = load(matrix + q * high + n);
@@ -360,7 +338,7 @@ void products_target(int degree, std::size_t padded, const double* weight, const
   Lanes psi[most], plain[most], sums[most * (most + 1) / 2];
   for (std::size_t i = 0; i < size; ++i) plain[i] = Lanes{};
   for (std::size_t i = 0; i < size * (size + 1) / 2; ++i) sums[i] = Lanes{};
-  for (std::size_t at = 0; at < padded; at += fit_lanes) {
+  for (std::size_t at = 0; at < padded; at += lanes) {
     const Lanes s = load(u + at), t = load(v + at), w = load(weight + at);
     powers_of<-1>(degree, s, t, psi);
     Lanes* sum = sums;
@@ -378,15 +356,15 @@ void interpolate_target(std::size_t count, std::size_t padded, std::size_t terms
                         const double* matrix, int components, const double* values, double* out) {
   for (int c = 0; c < components; ++c) {
     const double* f = values + static_cast<std::size_t>(c) * padded;
-    for (std::size_t n = 0; n < terms; n += 2 * fit_lanes) {
+    for (std::size_t n = 0; n < terms; n += 2 * lanes) {
       Lanes sum{}, next{};
-      const bool both = n + fit_lanes < terms;
+      const bool both = n + lanes < terms;
       for (std::size_t q = 0; q < count; ++q) {
         sum += f[q] * load(matrix + q * terms + n);
-        if (both) next += f[q] * load(matrix + q * terms + n + fit_lanes);
+        if (both) next += f[q] * load(matrix + q * terms + n + lanes);
       }
       store(sum, out + static_cast<std::size_t>(c) * terms + n);
-      if (both) store(next, out + static_cast<std::size_t>(c) * terms + n + fit_lanes);
+      if (both) store(next, out + static_cast<std::size_t>(c) * terms + n + lanes);
     }
   }
 }
@@ -395,10 +373,10 @@ void interpolate_target(std::size_t count, std::size_t padded, std::size_t terms
 template <int K>
 void add_of(int fit_degree, std::size_t terms_count, int degree, int components,
             const double* terms, const double* moments, const FitFrame& frame,
-            const std::array<double, 2>& centre, const double (*binomials)[2 * fit_lanes],
+            const std::array<double, 2>& centre, const double (*binomials)[2 * lanes],
             double* sums) {
-  constexpr std::size_t W = K >= 0 ? 1 : 2;    // vectors in a row
-  constexpr std::size_t room = W * fit_lanes;  // > degree
+  constexpr std::size_t W = K >= 0 ? 1 : 2;  // vectors in a row
+  constexpr std::size_t room = W * lanes;    // > degree
   constexpr std::size_t most = K >= 0 ? static_cast<std::size_t>(K) + 1 : room;
   const std::size_t rows = K >= 0 ? most : static_cast<std::size_t>(degree + 1);
   const std::size_t stride = fit_stride(fit_degree + degree);
@@ -412,7 +390,7 @@ void add_of(int fit_degree, std::size_t terms_count, int degree, int components,
   for (std::size_t a = 0; a < rows; ++a) {
     for (std::size_t w = 0; w < W; ++w)
       move[a * W + w] =
-          scale * (load(binomials[a] + w * fit_lanes) * load(power + room + w * fit_lanes - a));
+          scale * (load(binomials[a] + w * lanes) * load(power + room + w * lanes - a));
     scale *= frame.half[0];
   }
   for (int c = 0; c <= components; ++c) {
@@ -427,19 +405,18 @@ void add_of(int fit_degree, std::size_t terms_count, int degree, int components,
           const double value = *term;
           for (std::size_t d = 0; d < rows; ++d)
             for (std::size_t w = 0; w < W; ++w)
-              own[d * W + w] += value * load(from + d * stride + w * fit_lanes);
+              own[d * W + w] += value * load(from + d * stride + w * lanes);
         }
       }
     } else {
       for (std::size_t d = 0; d < rows; ++d)
-        for (std::size_t w = 0; w < W; ++w)
-          own[d * W + w] = load(moments + d * stride + w * fit_lanes);
+        for (std::size_t w = 0; w < W; ++w) own[d * W + w] = load(moments + d * stride + w * lanes);
     }
     // Across.
     double factor = 1.0;
     for (std::size_t d = 0; d < rows; ++d) {
       double from[room];
-      for (std::size_t w = 0; w < W; ++w) store(own[d * W + w], from + w * fit_lanes);
+      for (std::size_t w = 0; w < W; ++w) store(own[d * W + w], from + w * lanes);
       Lanes to[W] = {};
       for (std::size_t a = 0; a < rows - d; ++a)
         for (std::size_t w = 0; w < W; ++w) to[w] += from[a] * move[a * W + w];
@@ -451,14 +428,13 @@ void add_of(int fit_degree, std::size_t terms_count, int degree, int components,
       for (std::size_t d = rows - 1; d >= r; --d)
         for (std::size_t w = 0; w < W; ++w) own[d * W + w] += sy * own[(d - 1) * W + w];
     double* to = sums + static_cast<std::size_t>(c) * rows * room;
-    for (std::size_t i = 0; i < rows * W; ++i)
-      store(own[i] + load(to + i * fit_lanes), to + i * fit_lanes);
+    for (std::size_t i = 0; i < rows * W; ++i) store(own[i] + load(to + i * lanes), to + i * lanes);
   }
 }
 
 void add_target(int fit_degree, std::size_t terms_count, int degree, int components,
                 const double* terms, const double* moments, const FitFrame& frame,
-                const std::array<double, 2>& centre, const double (*binomials)[2 * fit_lanes],
+                const std::array<double, 2>& centre, const double (*binomials)[2 * lanes],
                 double* sums) {
   const auto add = [&](auto own) {
     add_of<decltype(own)::value>(fit_degree, terms_count, degree, components, terms, moments, frame,
@@ -488,7 +464,7 @@ void add_target(int fit_degree, std::size_t terms_count, int degree, int compone
 
 double dot_target(std::size_t count, const double* a, const double* b) {
   Lanes sum{};
-  for (std::size_t i = 0; i < count; i += fit_lanes) sum += load(a + i) * load(b + i);
+  for (std::size_t i = 0; i < count; i += lanes) sum += load(a + i) * load(b + i);
   return sum_of(sum);
 }
 
@@ -498,33 +474,6 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace bezel::detail {
 namespace {
-
-/// Solves matrix * x = columns in place (size x size both, row major), with pivots.
-void solve_all(std::size_t size, std::vector<long double>& matrix,
-               std::vector<long double>& columns) {
-  for (std::size_t j = 0; j < size; ++j) {
-    std::size_t pivot = j;
-    for (std::size_t i = j; i < size; ++i)
-      if (std::abs(matrix[i * size + j]) > std::abs(matrix[pivot * size + j])) pivot = i;
-    for (std::size_t k = 0; k < size; ++k) {
-      std::swap(matrix[pivot * size + k], matrix[j * size + k]);
-      std::swap(columns[pivot * size + k], columns[j * size + k]);
-    }
-    const long double inverse = 1.0L / matrix[j * size + j];
-    for (std::size_t k = 0; k < size; ++k) {
-      matrix[j * size + k] *= inverse;
-      columns[j * size + k] *= inverse;
-    }
-    for (std::size_t i = 0; i < size; ++i) {
-      if (i == j) continue;
-      const long double factor = matrix[i * size + j];
-      if (factor == 0.0L) continue;
-      for (std::size_t k = j; k < size; ++k) matrix[i * size + k] -= factor * matrix[j * size + k];
-      for (std::size_t k = 0; k < size; ++k)
-        columns[i * size + k] -= factor * columns[j * size + k];
-    }
-  }
-}
 
 /// sum c[i] T_i(x) -> sum c[i] x^i in place, c[i] = at(i).
 template <class At>
@@ -558,119 +507,6 @@ void to_monomials(int degree, double* terms) {
 }
 
 }  // namespace
-
-FitTable::FitTable(int with_degree)
-    : degree(with_degree),
-      count(static_cast<std::size_t>(bernstein::triangle_size(with_degree))),
-      padded(fit_padded(count)),
-      terms(padded) {
-  const int d = degree;
-  for (int j = 0; j <= d; ++j) {
-    for (int k = j % 2; k <= d + 1; k += 2) {
-      x.push_back(d == 0 ? 0.0 : std::cos(j * std::numbers::pi / d));
-      y.push_back(d == 0 ? 0.0 : std::cos(k * std::numbers::pi / (d + 1)));
-    }
-  }
-  std::vector<long double> matrix, columns(count * count, 0.0L);
-  std::vector<long double> tx(static_cast<std::size_t>(d) + 2, 1.0L), ty = tx;
-  for (std::size_t q = 0; q < count; ++q) {
-    tx[1] = x[q];
-    ty[1] = y[q];
-    for (std::size_t i = 2; i < tx.size(); ++i) {
-      tx[i] = 2.0L * tx[1] * tx[i - 1] - tx[i - 2];
-      ty[i] = 2.0L * ty[1] * ty[i - 1] - ty[i - 2];
-    }
-    for (std::size_t b = 0; b + 1 < ty.size(); ++b)
-      for (std::size_t a = 0; a + b + 1 < tx.size(); ++a) matrix.push_back(tx[a] * ty[b]);
-    columns[q * count + q] = 1.0L;
-  }
-  solve_all(count, matrix, columns);
-  chebyshev.assign(count * terms, 0.0);
-  for (std::size_t n = 0; n < count; ++n)
-    for (std::size_t q = 0; q < count; ++q)
-      chebyshev[q * terms + n] = static_cast<double>(columns[n * count + q]);
-  if (d > 1) {
-    high = fit_padded(2 * static_cast<std::size_t>(d) + 3);
-    tails.assign(count * high, 0.0);
-    std::size_t to = 0;
-    const auto keep = [&](int a, int b) {
-      const auto n = static_cast<std::size_t>(bernstein::triangle_index(d, a, b));
-      for (std::size_t q = 0; q < count; ++q) tails[q * high + to] = chebyshev[q * terms + n];
-      ++to;
-    };
-    for (int total = d; total >= d - 1; --total)
-      for (int b = 0; b <= total; ++b) keep(total - b, b);
-    keep(1, 0);
-    keep(0, 1);
-  }
-  x.resize(padded, x.back());
-  y.resize(padded, y.back());
-}
-
-const FitTable& fit_table(int degree) {
-  static std::array<std::once_flag, max_fit_degree + 1> made;
-  static std::array<std::unique_ptr<FitTable>, max_fit_degree + 1> tables;
-  const auto at = static_cast<std::size_t>(degree);
-  std::call_once(made[at], [&] { tables[at] = std::make_unique<FitTable>(degree); });
-  return *tables[at];
-}
-
-void MapPolynomial::set(int with_degree, std::span<const Vec2> control) {
-  degree = with_degree;
-  centre = 1.0 / 3.0;
-  // The Bernstein form in monomials about the centroid: differences of blossoms, all arguments the
-  // centroid but those of the derivatives.
-  const auto size = static_cast<std::size_t>(bernstein::triangle_size(degree));
-  x.assign(size, 0.0);
-  y.assign(size, 0.0);
-  std::array<Vec2, static_cast<std::size_t>(bernstein::triangle_size(max_fit_map))> p;
-  for (int b = 0; b <= degree; ++b) {
-    for (int a = 0; a <= degree - b; ++a) {
-      std::copy(control.begin(), control.end(), p.begin());
-      int left = degree;
-      const auto reduce = [&](int ku, int kv) {
-        std::size_t to = 0;
-        for (int k = 0; k < left; ++k) {
-          for (int j = 0; j < left - k; ++j, ++to) {
-            const Vec2& here = p[static_cast<std::size_t>(bernstein::triangle_index(left, j, k))];
-            const Vec2& right =
-                p[static_cast<std::size_t>(bernstein::triangle_index(left, j + 1, k))];
-            const Vec2& up = p[static_cast<std::size_t>(bernstein::triangle_index(left, j, k + 1))];
-            p[to] = ku > 0 ? right - here : kv > 0 ? up - here : (here + right + up) * (1.0 / 3.0);
-          }
-        }
-        --left;
-      };
-      for (int i = 0; i < a; ++i) reduce(1, 0);
-      for (int i = 0; i < b; ++i) reduce(0, 1);
-      while (left > 0) reduce(0, 0);
-      const auto at = static_cast<std::size_t>(bernstein::triangle_index(degree, a, b));
-      const double factor = binomial(degree, a) * binomial(degree - a, b);
-      if (at == 0) {
-        base = p[0];
-        continue;
-      }
-      x[at] = factor * p[0].x();
-      y[at] = factor * p[0].y();
-    }
-  }
-}
-
-void MapPolynomial::set_affine(const Vec2& at, const Vec2& first, const Vec2& second) {
-  degree = 1;
-  centre = 0.0;
-  base = at;
-  x = {0.0, first.x(), second.x()};
-  y = {0.0, first.y(), second.y()};
-}
-
-std::size_t CurvePoints::append(std::size_t n) {
-  const std::size_t first = count;
-  count += n;
-  if (x.size() < count + fit_lanes)
-    for (std::vector<double>* array : {&x, &y, &dx, &dy}) array->resize(2 * (count + fit_lanes));
-  return first;
-}
 
 HWY_EXPORT(map_target);
 HWY_EXPORT(invert_target);
@@ -738,7 +574,7 @@ void fit_interpolate(const FitTable& table, int components, const double* values
 }
 
 std::array<double, 2> fit_tails(const FitTable& table, const double* u, const double* v) {
-  std::array<double, 2 * fit_padded(2 * max_fit_degree + 3)> found;
+  std::array<double, 2 * padded_to_lanes(2 * max_fit_degree + 3)> found;
   HWY_DYNAMIC_DISPATCH(tails_target)
   (table.count, table.high, table.tails.data(), u, v, found.data());
   const auto d = static_cast<std::size_t>(table.degree);
@@ -752,15 +588,15 @@ void fit_add(const FitTable& table, int degree, int components, const double* te
              const double* moments, const FitFrame& frame, const std::array<double, 2>& centre,
              double* sums) {
   static const auto binomials = [] {
-    std::array<std::array<double, 2 * fit_lanes>, 2 * fit_lanes> made{};
-    for (std::size_t n = 0; n < 2 * fit_lanes; ++n)  // [k][n], zeros where k > n
+    std::array<std::array<double, 2 * lanes>, 2 * lanes> made{};
+    for (std::size_t n = 0; n < 2 * lanes; ++n)  // [k][n], zeros where k > n
       for (std::size_t k = 0; k <= n; ++k)
         made[k][n] = binomial(static_cast<int>(n), static_cast<int>(k));
     return made;
   }();
   HWY_DYNAMIC_DISPATCH(add_target)
   (table.degree, table.terms, degree, components, terms, moments, frame, centre,
-   reinterpret_cast<const double(*)[2 * fit_lanes]>(binomials.data()), sums);
+   reinterpret_cast<const double(*)[2 * lanes]>(binomials.data()), sums);
 }
 
 void fit_products(int degree, std::size_t padded, const double* weight, const double* u,

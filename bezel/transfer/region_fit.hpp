@@ -9,21 +9,17 @@
 #include <vector>
 
 #include "bezel/numeric/vec.hpp"
+#include "bezel/transfer/lanes.hpp"
 
 namespace bezel::detail {
 
-/// Numbers that are worked on together; arrays are padded to whole blocks.
-inline constexpr std::size_t fit_lanes = 8;
-inline constexpr std::size_t fit_padded(std::size_t n) {
-  return (n + fit_lanes - 1) / fit_lanes * fit_lanes;
-}
-
 inline constexpr int max_fit_degree = 12;
 inline constexpr int max_fit_moments = 23;
+inline constexpr int max_fit_map = 10;  ///< degree of a map
 
 /// Rows of monomials: x^a y^b at [b * fit_stride(degree) + a].
 inline constexpr std::size_t fit_stride(int degree) {
-  return fit_padded(static_cast<std::size_t>(degree) + 1);
+  return padded_to_lanes(static_cast<std::size_t>(degree) + 1);
 }
 inline constexpr std::size_t fit_rows(int degree) {
   return static_cast<std::size_t>(degree + 1) * fit_stride(degree);

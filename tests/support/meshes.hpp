@@ -79,6 +79,11 @@ inline PlaneMap bend(double a, double b) {
   };
 }
 
+/// The map, then moved.
+inline PlaneMap moved(const PlaneMap& first, const Vec2& by) {
+  return [first, by](const Vec2& p) { return first(p) + by; };
+}
+
 /// Rotation by an angle after scaling.
 inline PlaneMap turn(double angle, double scale, const PlaneMap& first = same_place) {
   return [=](const Vec2& p) {

@@ -18,7 +18,7 @@ namespace {
 struct Points {
   explicit Points(std::size_t n) {
     RandomStream random("accumulate", n);
-    const std::size_t padded = (n + lanes - 1) / lanes * lanes;
+    const std::size_t padded = padded_to_lanes(n);
     for (std::size_t i = 0; i < padded; ++i) {
       weight.push_back(i < n ? random.uniform(-1, 1) : 0.0);
       for (std::vector<double>* a : {&tu, &tv, &du, &dv}) a->push_back(random.uniform(-0.2, 0.8));

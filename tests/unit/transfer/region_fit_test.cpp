@@ -41,7 +41,7 @@ CurvePoints boundary_of(const std::array<Vec2, 3>& corner, int degree) {
       points.dy[first + i] = side[1] * rule.weight[i];
     }
   }
-  for (std::size_t i = points.count; i < fit_padded(points.count); ++i) {
+  for (std::size_t i = points.count; i < padded_to_lanes(points.count); ++i) {
     points.x[i] = points.x[0];
     points.y[i] = points.y[0];
     points.dx[i] = points.dy[i] = 0.0;
@@ -84,7 +84,7 @@ TEST(FitInvert, FindsThePointsOfEveryMap) {
   for (int degree = 1; degree <= 10; ++degree) {
     const auto control = bent_triangle(degree, 0.02, static_cast<std::uint64_t>(degree));
     const MapPolynomial map(degree, control);
-    constexpr std::size_t blocks = 3, count = blocks * fit_lanes;
+    constexpr std::size_t blocks = 3, count = blocks * lanes;
     RandomStream random("fit invert", static_cast<std::uint64_t>(degree));
     std::vector<double> u(count), v(count), x(count), y(count), det(count), s(count), t(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -114,7 +114,7 @@ TEST(FitInvert, SaysWhenAPointHasNoPlace) {
   const std::vector<Vec2> control = {{{0, 0}},   {{0.5, 0}},   {{0.5, 0}},
                                      {{0, 0.5}}, {{0.5, 0.5}}, {{0, 1}}};
   const MapPolynomial map(2, control);
-  std::vector<double> x(fit_lanes, 0.3), y(fit_lanes, 0.2), u(fit_lanes), v(fit_lanes);
+  std::vector<double> x(lanes, 0.3), y(lanes, 0.2), u(lanes), v(lanes);
   x[3] = 40.0;
   EXPECT_FALSE(fit_invert(map, 1, x.data(), y.data(), u.data(), v.data(), nullptr, nullptr));
 }
@@ -154,7 +154,7 @@ TEST(FitAdd, IsTheIntegralOfTheInterpolantTimesTheMonomials) {
       const TriangleRule rule = triangle_rule(fit + degree);
       std::vector<std::vector<double>> seen;
       support::on_every_target([&] {
-        std::vector<double> moments(fit_rows(fit + degree) + 2 * fit_lanes);
+        std::vector<double> moments(fit_rows(fit + degree) + 2 * lanes);
         fit_moments(fit + degree, boundary, frame, moments.data());
         std::vector<double> sums(3 * fit_rows(degree), 0.0);
         fit_add(table, degree, 2, terms.data(), moments.data(), frame, centre, sums.data());
@@ -205,7 +205,7 @@ TEST(MassMatrices, ByTablesAndByPointsAgree) {
       MappedMass(g, p).compute(control, mass, integrals);
 
       const MassRule rule = make_mass_rule(g, 2 * p + 2 * (g - 1));
-      const std::size_t padded = fit_padded(rule.weight.size());
+      const std::size_t padded = padded_to_lanes(rule.weight.size());
       std::vector<double> u(padded), v(padded), w(padded);
       for (std::size_t q = 0; q < rule.weight.size(); ++q) {
         u[q] = rule.place[q][0];

@@ -19,7 +19,7 @@ using test::turn;
 
 /// A map that moves the square to x > 0.
 PlaneMap right_of_axis(const PlaneMap& first) {
-  return [first](const Vec2& p) { return first(p) + Vec2{{1.5, 0.0}}; };
+  return test::moved(first, Vec2{{1.5, 0.0}});
 }
 
 class WeightedContinuous : public testing::TestWithParam<std::tuple<int, int, int>> {

@@ -19,7 +19,7 @@ using test::PlaneMap;
 
 /// [0, 2] x [-1, 1]: x is the distance from the axis x = 0, which is a side.
 PlaneMap beside_axis(const PlaneMap& map) {
-  return [map](const Vec2& p) { return map(p) + Vec2{{1.0, 0.0}}; };
+  return test::moved(map, Vec2{{1.0, 0.0}});
 }
 
 /// Integral of the product of all fields (component 0) and x^power, by quadrature.
