@@ -119,6 +119,9 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
               {"overlaps", r.overlaps},
               {"unresolved", r.unresolved},
               {"uncovered_area", r.uncovered_area},
+              {"extension_growth", r.extension_growth},
+              {"extension_moved_area", r.extension_moved_area},
+              {"extension_held_area", r.extension_held_area},
               {"outside_area", r.outside_area},
               {"spread_elements", r.spread_elements},
               {"uncovered_elements", uncovered},
@@ -183,6 +186,14 @@ std::string to_table(const TransferReport& r, const TransferCommand& options) {
   if (r.uncovered_area > 0) {
     text += fmt::format("target area without donor {:.6g} ({})\n", r.uncovered_area,
                         counted(r.uncovered_elements.size(), "triangle"));
+  }
+  if (r.extension_moved_area > 0) {
+    text += fmt::format("  {:.6g} of it continued from better donors than the nearest\n",
+                        r.extension_moved_area);
+  }
+  if (r.extension_held_area > 0) {
+    text += fmt::format("  {:.6g} of it too far from the donor for its polynomials: values held\n",
+                        r.extension_held_area);
   }
   if (r.outside_area > 0) {
     text += fmt::format("donor area without target {:.6g}\n", r.outside_area);

@@ -10,6 +10,7 @@ void ElementBlocks::reset(std::size_t with_columns) {
   columns = with_columns;
   for (auto* list : {&donor, &made_donor}) list->clear();
   for (auto* list : {&product, &mass, &value, &made}) list->clear();
+  area = 0.0;
 }
 
 void ElementTransfer::keep_pair(std::int32_t d, Accumulators& sums, std::span<const double> mass,
@@ -30,8 +31,29 @@ void ElementTransfer::keep_pair(std::int32_t d, Accumulators& sums, std::span<co
   std::fill(sums.product.begin(), sums.product.end(), 0.0);
 }
 
+void ElementBlocks::move_mass(std::int32_t d, double sign, std::span<const double> change,
+                              bool is_made) {
+  const auto add = [&](std::vector<std::int32_t>& to, std::vector<double>& masses) {
+    const auto at = static_cast<std::size_t>(std::find(to.begin(), to.end(), d) - to.begin());
+    if (at == to.size()) {
+      to.push_back(d);
+      masses.resize(masses.size() + columns, 0.0);
+    }
+    for (std::size_t c = 0; c < columns; ++c) masses[at * columns + c] += sign * change[c];
+    return at;
+  };
+  if (is_made) {
+    add(made_donor, made);
+    return;
+  }
+  const std::size_t size = donor.empty() ? 0 : product.size() / donor.size();
+  add(donor, mass);
+  product.resize(donor.size() * size, 0.0);
+}
+
 void ElementTransfer::finish_blocks(const Group& g, std::int32_t t, Accumulators& sums, double area,
                                     ElementBlocks& blocks, ElementOutcome& outcome) {
+  blocks.area = area;
   // One solve with the columns of all pairs side by side.
   const std::size_t functions = sums.basis.size();
   const std::size_t pairs = blocks.donor.size();

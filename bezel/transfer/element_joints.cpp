@@ -96,7 +96,7 @@ double ElementTransfer::bridge_joints() {
 // element gives what it has: to its one owner of the two target elements, or to the books where one
 // mesh ends.
 void ElementTransfer::give_strips(std::int32_t t, const ElementPieces& own, std::size_t components,
-                                  GivenList& given, std::span<double> made) {
+                                  GivenList& given, std::span<double> made, ElementBlocks* blocks) {
   const IntervalRule& line = rule(strip_points);
   const std::size_t pairs = given.donor.size();
   std::size_t entry = pairs;
@@ -146,6 +146,15 @@ void ElementTransfer::give_strips(std::int32_t t, const ElementPieces& own, std:
         given.area.push_back(area);
         given.mass.insert(given.mass.end(), mass.begin() + static_cast<std::ptrdiff_t>(components),
                           mass.end());
+      }
+      if (blocks != nullptr) {
+        // With signs as for the sums over donors below.
+        const bool inside = near != exterior && far != exterior;
+        const double sign = inside ? 1.0 : -1.0;
+        const std::span<const double> both(mass);
+        if (near != exterior) blocks->move_mass(near, -sign, both.first(components), !inside);
+        if (far != exterior) blocks->move_mass(far, sign, both.last(components), !inside);
+        continue;
       }
       for (std::size_t c = 0; c < components; ++c) {
         const double change = mass[components + c] - mass[c];

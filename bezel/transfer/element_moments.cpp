@@ -16,6 +16,10 @@ namespace {
 /// Donors smaller than this fraction of the target's area get their areas from rays of their own.
 constexpr double small_area = 1.0 / 64.0;
 
+/// Largest factor by which the terms of a donor's polynomial may exceed its values in a region that
+/// is thin and lies across the target's coordinates.
+constexpr double steepest_terms = 256.0;
+
 Vec2 mix(const Vec2& a, const Vec2& b, double s) {
   return (1.0 - s) * a + s * b;
 }
@@ -114,15 +118,25 @@ const PieceTable& ElementTransfer::piece_table(int degree, int moments) {
 }
 
 // In the target's barycentrics about the region's centre; piece_control_ holds the pieces about it.
-void ElementTransfer::add_pair_moments(const Group& g, std::int32_t t, std::int32_t d,
+// False, and nothing is added, where that loses digits.
+bool ElementTransfer::add_pair_moments(const Group& g, std::int32_t t, std::int32_t d,
                                        const RunShape& shape, const double* base,
                                        Accumulators& sums, std::span<double> mass) {
   const int degree = g.target_space->degree(ElementId(t));
   const Frame& target = g.target_frame[static_cast<std::size_t>(t)];
   const Frame& donor = g.donor_frame[static_cast<std::size_t>(d)];
   local_control_.resize(piece_control_.size());
-  for (std::size_t i = 0; i < piece_control_.size(); ++i)
+  double extent = 0.0;
+  for (std::size_t i = 0; i < piece_control_.size(); ++i) {
     local_control_[i] = to_barycentric(target, piece_control_[i]);
+    extent = std::max({extent, std::abs(local_control_[i].x()), std::abs(local_control_[i].y())});
+  }
+  const TargetPlace in_plane = place_of(target);
+  const Vec2 first = to_barycentric(donor, in_plane.along_first);
+  const Vec2 second = to_barycentric(donor, in_plane.along_second);
+  const double slope = std::max(
+      {std::abs(first.x()), std::abs(first.y()), std::abs(second.x()), std::abs(second.y())});
+  if (std::pow(slope * extent, degree) > steepest_terms) return false;
   moment_pieces_.clear();
   const Vec2* p = local_control_.data();
   for (const int own : piece_degree_) {
@@ -132,19 +146,27 @@ void ElementTransfer::add_pair_moments(const Group& g, std::int32_t t, std::int3
   const auto size = static_cast<std::size_t>(bernstein::triangle_size(2 * degree));
   moments_.resize(size);
   region_moments(2 * degree, moment_pieces_, moments_.data());
-  const TargetPlace in_plane = place_of(target);
   for (double& m : moments_) m *= in_plane.area;
 
   RegionPlace place;
   const Vec2 in_target = to_barycentric(target, (origin_ - target.centre) + shape.relative);
   const Vec2 in_donor = to_barycentric(donor, (origin_ - donor.centre) + shape.relative);
-  const Vec2 first = to_barycentric(donor, in_plane.along_first);
-  const Vec2 second = to_barycentric(donor, in_plane.along_second);
   place.in_target = {in_target[0], in_target[1]};
   place.in_donor = {in_donor[0], in_donor[1]};
   place.to_donor = {first[0], second[0], first[1], second[1]};
   add_region(degree, place, moments_.data(), g.components, g.donor_powers(d), base,
              sums.product.data(), sums.basis.data(), mass.data());
+  return true;
+}
+
+void ElementTransfer::add_apart(std::size_t i, std::int32_t t, std::int32_t d,
+                                std::span<const Segment> run, double area, std::span<double> mass) {
+  const Group& g = groups_[i];
+  const RunShape shape = run_shape(run);
+  if (add_pair_moments(g, t, d, shape, base_[i].data(), moment_sums_[i], mass)) return;
+  taken_ = base_[i];
+  extended_[i] = 1;
+  add_pair(g, t, d, run, area, shape.centre, sums_[i], mass);
 }
 
 bool ElementTransfer::can_batch(const Group& g) {
@@ -300,8 +322,7 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
   }
   for (std::size_t k = 0; k < regions_.size(); ++k) {
     if (!regions_[k].far && (bridged_[k] == 0 || own.donors[k] == exterior)) continue;
-    add_pair_moments(g, t, own.donors[k], run_shape(run_of(own, k)), base, sums,
-                     mass.subspan(k * nc, nc));
+    add_apart(i, t, own.donors[k], run_of(own, k), area_[k], mass.subspan(k * nc, nc));
   }
 }
 

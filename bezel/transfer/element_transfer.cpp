@@ -74,15 +74,19 @@ void ElementTransfer::flush(const Group& g, std::int32_t d, int target_degree, A
   const PointBlock points{w_.data(),  tu_.data(), tv_.data(),
                           du_.data(), dv_.data(), count_ / lanes};
   const int degree = g.donor_space->degree(ElementId(d));
-  const auto factors = multinomials(degree);
-  const auto scaled = g.donor_scaled(d);
-  shifted_.assign(scaled.begin(), scaled.end());
-  for (std::size_t c = 0; c < taken_.size(); ++c)
-    for (std::size_t n = 0; n < factors.size(); ++n)
-      shifted_[c * factors.size() + n] -= taken_[c] * factors[n];
+  take_off(degree, g.donor_scaled(d), taken_);
   accumulate(target_degree, degree, g.components, shifted_.data(), points, sums.product.data(),
              sums.basis.data(), sums.mass.data());
   count_ = 0;
+}
+
+void ElementTransfer::take_off(int degree, std::span<const double> scaled,
+                               std::span<const double> constants) {
+  const auto factors = multinomials(degree);
+  shifted_.assign(scaled.begin(), scaled.end());
+  for (std::size_t c = 0; c < constants.size(); ++c)
+    for (std::size_t n = 0; n < factors.size(); ++n)
+      shifted_[c * factors.size() + n] -= constants[c] * factors[n];
 }
 
 // Gauss nodes on the run's pieces in the plane; exact for integrands of total degree `degree` in x
@@ -368,13 +372,10 @@ std::span<const std::array<Vec2, 2>> ElementTransfer::plane_bridges() {
 // Constants come back whatever the rounding of the sums when they are not integrated at all.
 void ElementTransfer::choose_base(std::size_t i, const ElementPieces& own) {
   const Group& g = groups_[i];
-  const auto nc = static_cast<std::size_t>(g.components);
   const auto some = std::find_if(own.donors.begin(), own.donors.end(),
                                  [](std::int32_t d) { return d != exterior; });
-  if (some == own.donors.end()) return;
-  const auto d = static_cast<std::size_t>(*some);
-  for (std::size_t c = 0; c < nc; ++c)
-    base_[i][c] = g.donor_mass[d * nc + c] / donor_.element_area[d];
+  const std::int32_t d = some != own.donors.end() ? *some : search_.nearest(origin_);
+  for (std::size_t c = 0; c < base_[i].size(); ++c) base_[i][c] = g.constant_of(donor_, d, c);
 }
 
 void ElementTransfer::begin_moments(std::size_t i) {
@@ -458,9 +459,8 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
     if (fitted) {
       fit_.begin(i, g, t, all_runs(own), blocks == nullptr);
       base_[i].assign(fit_.constants().begin(), fit_.constants().end());
-    } else if (!batched && blocks == nullptr) {
-      choose_base(i, own);
     }
+    if (blocks == nullptr && (outcome.pairs == 0 || (!fitted && !batched))) choose_base(i, own);
     taken_ = base_[i];
     double* to = given.mass.data() + first_given * components + c0;
     for (std::size_t k = 0; k < own.donors.size(); ++k) {
@@ -474,21 +474,22 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
         extended_[i] = 1;
         const auto run = run_of(own, k);
         if (blocks != nullptr) {
-          extension_blocks(g, t, run, area, run_shape(run).centre, sums_[i], *blocks);
+          extension_blocks(g, t, run, area, run_shape(run).centre, sums_[i], *blocks,
+                           outcome.extension);
           continue;
         }
-        add_extension(g, t, run, area, run_shape(run).centre, sums_[i], here);
+        add_extension(g, t, run, area, run_shape(run).centre, sums_[i], here, outcome.extension);
         for (std::size_t c = 0; c < nc; ++c) made[c0 + c] += here[c];
       } else if (!batched) {
         if (fits && fit_.add(d, run_begin(k), run_end_[k], area, here)) {
           if (blocks != nullptr) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
+        } else if (blocks == nullptr && by_moments(g, t, d)) {
+          begin_moments(i);
+          add_apart(i, t, d, run_of(own, k), area, here);
         } else {
           const auto run = run_of(own, k);
           const RunShape shape = run_shape(run);
-          if (blocks == nullptr && by_moments(g, t, d)) {
-            begin_moments(i);
-            add_pair_moments(g, t, d, shape, base_[i].data(), moment_sums_[i], here);
-          } else if (fits || (fitted && g.donor_mapped)) {
+          if (fits || (fitted && g.donor_mapped)) {
             fitted_mass_.assign(nc, 0.0);
             add_pair(g, t, d, run, area, shape.centre, sums_[i], fitted_mass_);
             if (loose_) fit_.mass_of(d, run_begin(k), run_end_[k], area, plane_bridges(), here);
@@ -508,7 +509,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
     if (!batched) extended_[i] = 1;
     c0 += nc;
   }
-  if (loose_ && blocks == nullptr && components > 0) give_strips(t, own, components, given, made);
+  if (loose_ && components > 0) give_strips(t, own, components, given, made, blocks);
   outcome.partition_residual = std::abs(total - own_area) / own_area;
   if (outcome.partition_residual > largest_joint_gap &&
       outcome.partition_residual > largest_partition_residual(t))

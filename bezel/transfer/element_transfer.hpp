@@ -13,6 +13,7 @@
 #include "bezel/field/field.hpp"
 #include "bezel/geometry/triangle.hpp"
 #include "bezel/numeric/quadrature.hpp"
+#include "bezel/transfer/extension.hpp"
 #include "bezel/transfer/group.hpp"
 #include "bezel/transfer/mass_rule.hpp"
 #include "bezel/transfer/moments.hpp"
@@ -32,6 +33,7 @@ struct ElementOutcome {
   std::int32_t pairs = 0;
   double solve_seconds = 0;   ///< measured on every 16th element and multiplied
   bool inconsistent = false;  ///< the pieces around some T n D do not close
+  ExtensionReport extension;
 };
 
 /// Masses and areas that donor elements gave, for the balance of what lies outside the target: one
@@ -52,8 +54,11 @@ struct ElementBlocks {
   std::vector<double> value;             ///< [n][pair][column]: coefficients of the result
   std::vector<std::int32_t> made_donor;  ///< donors extended into what none covers
   std::vector<double> made;              ///< per such donor [column]: mass made
+  double area = 0;                       ///< of all that the element received
 
   void reset(std::size_t with_columns);
+  /// Adds sign * change to what donor d gave, or to what was made of it.
+  void move_mass(std::int32_t d, double sign, std::span<const double> change, bool is_made);
 };
 
 /// Per-thread worker.
@@ -99,13 +104,16 @@ class ElementTransfer {
   std::span<const std::array<Vec2, 2>> plane_bridges();
   bool is_closed(std::int32_t t, std::int32_t d, double gap) const;
   void give_strips(std::int32_t t, const ElementPieces& own, std::size_t components,
-                   GivenList& given, std::span<double> made);
+                   GivenList& given, std::span<double> made, ElementBlocks* blocks);
   double largest_partition_residual(std::int32_t t) const;
   // By moments (element_moments.cpp).
   static bool by_moments(const Group& g, std::int32_t t, std::int32_t d);
   const PieceTable& piece_table(int degree, int moments);
-  void add_pair_moments(const Group& g, std::int32_t t, std::int32_t d, const RunShape& shape,
+  bool add_pair_moments(const Group& g, std::int32_t t, std::int32_t d, const RunShape& shape,
                         const double* base, Accumulators& sums, std::span<double> mass);
+  /// By moments about the region's own centre, or by quadrature.
+  void add_apart(std::size_t i, std::int32_t t, std::int32_t d, std::span<const Segment> run,
+                 double area, std::span<double> mass);
   void moments_to_powers(std::size_t i, std::int32_t t);
   /// Sets moments_ to those of target element t in its coordinates.
   void element_moments(const Group& g, std::int32_t t, int degree);
@@ -133,18 +141,22 @@ class ElementTransfer {
   std::size_t run_begin(std::size_t k) const { return k == 0 ? 0 : run_end_[k - 1]; }
   void note_region(std::int32_t t, std::int32_t d, double area, double gap,
                    ElementOutcome& outcome) const;
+  /// Sets shifted_ to a donor's coefficients less a constant for each component.
+  void take_off(int degree, std::span<const double> scaled, std::span<const double> constants);
   void flush(const Group& g, std::int32_t d, int target_degree, Accumulators& sums);
   void add_pair(const Group& g, std::int32_t t, std::int32_t d, std::span<const Segment> run,
                 double area, const Vec2& centre, Accumulators& sums, std::span<double> mass);
   void add_extension(const Group& g, std::int32_t t, std::span<const Segment> run, double area,
-                     const Vec2& centre, Accumulators& sums, std::span<double> made);
-  /// Calls visit(weight, target place, point, donor, donor place) at the points of a rule for the
-  /// part of t that no donor covers, the donor being the nearest one.
+                     const Vec2& centre, Accumulators& sums, std::span<double> made,
+                     ExtensionReport& report);
+  /// Calls visit(weight, target place, donor, donor place) at the points of a rule for the part of
+  /// t that no donor covers.
   template <class Visit>
   void extension_points(const Group& g, std::int32_t t, std::span<const Segment> run,
-                        const Vec2& centre, const Visit& visit);
+                        const Vec2& centre, ExtensionReport& report, const Visit& visit);
   void extension_blocks(const Group& g, std::int32_t t, std::span<const Segment> run, double area,
-                        const Vec2& centre, Accumulators& sums, ElementBlocks& blocks);
+                        const Vec2& centre, Accumulators& sums, ElementBlocks& blocks,
+                        ExtensionReport& report);
   static void keep_pair(std::int32_t d, Accumulators& sums, std::span<const double> mass,
                         ElementBlocks& blocks);
   void finish_blocks(const Group& g, std::int32_t t, Accumulators& sums, double area,

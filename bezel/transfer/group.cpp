@@ -11,6 +11,9 @@
 namespace bezel::detail {
 namespace {
 
+/// Coefficients that differ by less than this fraction are equal up to rounding.
+constexpr double equal_rounding = 0x1p-49;
+
 /// The target's polynomials may stay on the triangle they were computed on when the space's frame
 /// is that triangle, up to the rounding of barycentric coordinates at its place in the plane.
 bool is_frame(const Frame& frame, const std::array<Vec2, 3>& corners) {
@@ -179,6 +182,19 @@ std::span<const double> Group::donor_scaled(std::int32_t e) const {
   if (!scaled_offset_.empty())
     return {scaled.data() + scaled_offset_[static_cast<std::size_t>(degree)], size * nc};
   return {scaled.data() + donor_space->offset(id) * nc, size * nc};
+}
+
+double Group::constant_of(const OverlayMesh& donor, std::int32_t e, std::size_t component) const {
+  const auto d = static_cast<std::size_t>(e);
+  const auto nc = static_cast<std::size_t>(components);
+  const auto factors = multinomials(donor_space->degree(ElementId(e)));
+  const auto own = donor_scaled(e).subspan(component * factors.size(), factors.size());
+  bool equal = true;
+  for (std::size_t n = 0; n < factors.size(); ++n) {
+    const double all = own[0] * factors[n];
+    equal = equal && std::abs(own[n] - all) <= equal_rounding * std::abs(all);
+  }
+  return equal ? own[0] : donor_mass[d * nc + component] / donor.element_area[d];
 }
 
 std::span<double> Group::target_out(std::int32_t e) {

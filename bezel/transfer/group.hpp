@@ -62,6 +62,9 @@ struct Group {
   const double* donor_powers(std::int32_t e) const {
     return powers.data() + donor_space->offset(ElementId(e)) * static_cast<std::size_t>(components);
   }
+  /// The mean of a donor element's component, or, when all coefficients are equal up to rounding,
+  /// the first of them: a constant less this number is 0.
+  double constant_of(const OverlayMesh& donor, std::int32_t e, std::size_t component) const;
   std::span<double> target_out(std::int32_t e);
   bool in_other_frame(std::int32_t t) const {
     return !other_frame.empty() && other_frame[static_cast<std::size_t>(t)] != 0;

@@ -146,8 +146,9 @@ bool TransferOperator::accepts(const Space& space) const {
   return same_layout(space, *impl_->donor);
 }
 
-// One target element: the blocks act on what differs from the element's mean, so that a constant
-// comes back constant, and a constant takes up what rounding left of the mass received.
+// One target element: the blocks act on what differs from a value of one donor, so that a constant
+// comes back constant even where polynomials are continued far and the blocks' entries are large,
+// and a constant takes up what rounding left of the mass received.
 double TransferOperator::Impl::apply_element(const OperatorRows::Row& row, const Field& f,
                                              std::span<double> out) const {
   const auto nc = static_cast<std::size_t>(f.components());
@@ -155,20 +156,27 @@ double TransferOperator::Impl::apply_element(const OperatorRows::Row& row, const
   const double* own = integrals.data() + target->offset(ElementId(row.target));
   double area = 0.0;
   for (std::size_t i = 0; i < n; ++i) area += own[i];
-  double received_area = 0.0;
+  std::vector<double> some(nc, 0.0);
+  if (!row.blocks.empty()) {
+    // The mean of a donor's coefficients: theirs, to the bit, when they are equal.
+    const auto d = f.coefficients(ElementId(row.blocks.front().donor));
+    const std::size_t size = row.blocks.front().mass.size();
+    for (std::size_t c = 0; c < nc; ++c) {
+      double sum = 0.0;
+      for (std::size_t m = 1; m < size; ++m) sum += d[m * nc + c] - d[c];
+      some[c] = d[c] + sum / static_cast<double>(size);
+    }
+  }
   std::vector<double> mass(nc, 0.0);
   for (const OperatorRows::Block& block : row.blocks) {
     const auto d = f.coefficients(ElementId(block.donor));
     for (std::size_t m = 0; m < block.mass.size(); ++m) {
-      received_area += block.mass[m];
-      for (std::size_t c = 0; c < nc; ++c) mass[c] += block.mass[m] * d[m * nc + c];
+      for (std::size_t c = 0; c < nc; ++c) mass[c] += block.mass[m] * (d[m * nc + c] - some[c]);
     }
   }
-  const bool full = std::abs(received_area - area) <= covered * area;
-  std::vector<double> mean(nc, 0.0);
-  if (full) {
-    for (std::size_t c = 0; c < nc; ++c) mean[c] = mass[c] / received_area;
-  }
+  for (std::size_t c = 0; c < nc; ++c) mass[c] += some[c] * row.area;
+  const bool full = std::abs(row.area - area) <= covered * area;
+  if (!full) std::fill(some.begin(), some.end(), 0.0);
   std::fill(out.begin(), out.end(), 0.0);
   for (const OperatorRows::Block& block : row.blocks) {
     const auto d = f.coefficients(ElementId(block.donor));
@@ -176,13 +184,13 @@ double TransferOperator::Impl::apply_element(const OperatorRows::Row& row, const
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t m = 0; m < size; ++m) {
         const double k = block.value[i * size + m];
-        for (std::size_t c = 0; c < nc; ++c) out[i * nc + c] += k * (d[m * nc + c] - mean[c]);
+        for (std::size_t c = 0; c < nc; ++c) out[i * nc + c] += k * (d[m * nc + c] - some[c]);
       }
     }
   }
   double defect = 0.0;
   for (std::size_t c = 0; c < nc; ++c) {
-    for (std::size_t i = 0; i < n; ++i) out[i * nc + c] += mean[c];
+    for (std::size_t i = 0; i < n; ++i) out[i * nc + c] += some[c];
     for (int sweep = 0; sweep < 2; ++sweep) {
       double got = 0.0;
       for (std::size_t i = 0; i < n; ++i) got += out[i * nc + c] * own[i];

@@ -59,6 +59,7 @@ void OperatorRows::store(std::size_t index, std::int32_t t, const ElementBlocks&
                           std::vector<double>(mass, mass + static_cast<std::ptrdiff_t>(used))});
   }
   chunk.target.push_back(t);
+  chunk.area.push_back(blocks.area);
   chunk.first_pair.push_back(chunk.donor.size());
 }
 
@@ -112,6 +113,7 @@ OperatorRows::Block OperatorRows::block(const Chunk& chunk, std::size_t pair) co
 void OperatorRows::fill_row(std::size_t chunk, std::size_t i, Row& row) const {
   const Chunk& from = chunks_[chunk];
   row.target = from.target[i];
+  row.area = from.area[i];
   row.blocks.clear();
   for (std::size_t pair = from.first_pair[i]; pair < from.first_pair[i + 1]; ++pair)
     row.blocks.push_back(block(from, pair));

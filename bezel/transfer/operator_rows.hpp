@@ -23,6 +23,7 @@ class OperatorRows {
   };
   struct Row {
     std::int32_t target;
+    double area = 0;            ///< of all that it received
     std::vector<Block> blocks;  ///< by ascending donor
   };
   struct MadeMass {  ///< mass that a donor's extension makes, per donor function
@@ -68,6 +69,7 @@ class OperatorRows {
  private:
   struct Chunk {
     std::vector<std::int32_t> target;
+    std::vector<double> area;             // per target
     std::vector<std::size_t> first_pair;  // per target and one more
     std::vector<std::int32_t> donor;      // per pair
     std::vector<std::size_t> offset;      // per pair and one more, into values

@@ -286,9 +286,7 @@ const PairFit::Donor& PairFit::donor_of(std::int32_t d) {
   donor.element = d;
   const auto nc = static_cast<std::size_t>(g_->components);
   donor.mean.resize(nc);
-  for (std::size_t c = 0; c < nc; ++c)
-    donor.mean[c] = g_->donor_mass[static_cast<std::size_t>(d) * nc + c] /
-                    donor_.element_area[static_cast<std::size_t>(d)];
+  for (std::size_t c = 0; c < nc; ++c) donor.mean[c] = g_->constant_of(donor_, d, c);
   if (!g_->donor_mapped) return donor;
   donor.map.set(donor_.degree, donor_.element(d));
   const int pd = g_->donor_space->degree(ElementId(d));

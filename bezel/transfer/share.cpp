@@ -119,6 +119,7 @@ void write_chunk(const ChunkResult& chunk, const OverlayMesh& donor, const Overl
   }
   numbers(target, uncovered);
   out.list(uncovered_area);
+  out.value(chunk.extension);
   for (const double x : {chunk.uncovered_area, chunk.max_partition_residual, chunk.max_joint_gap,
                          chunk.max_mass_defect, chunk.overlay, chunk.integrate, chunk.solve})
     out.value(x);
@@ -140,6 +141,7 @@ ChunkResult read_chunk(MessageReader& in) {
   const auto uncovered_area = in.list<double>();
   for (std::size_t i = 0; i < uncovered.size(); ++i)
     chunk.uncovered.emplace_back(ElementId(uncovered[i]), uncovered_area.at(i));
+  chunk.extension = in.value<ExtensionReport>();
   for (double* x : {&chunk.uncovered_area, &chunk.max_partition_residual, &chunk.max_joint_gap,
                     &chunk.max_mass_defect, &chunk.overlay, &chunk.integrate, &chunk.solve})
     *x = in.value<double>();

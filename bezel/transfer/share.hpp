@@ -33,9 +33,8 @@ struct Share {
 /// Runs of chunks with about the same work: as many candidates for pairs, by their boxes. Some are
 /// empty when there are more shares than chunks.
 ///
-/// A donor element may matter to a target element when their boxes meet, or when it can be the
-/// nearest one to a point of the target element's box: when it is no farther from the box than
-/// some donor corner is from the box's farthest point.
+/// A donor element may matter to a target element when it is in reach (donors_in_reach): when their
+/// boxes meet, or when it can be the nearest one to a point of the target element's box.
 /// @param count  at least 1; of the shares
 /// @cost   two queries of the donor's tree per target element
 std::vector<Share> split_work(const OverlayMesh& donor, const OverlayMesh& target,

@@ -1,40 +1,16 @@
 // Which target elements each process works on, and which donor elements they may need.
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "bezel/base/parallel.hpp"
-#include "bezel/transfer/overlay.hpp"
+#include "bezel/transfer/extension.hpp"
 #include "bezel/transfer/share.hpp"
 
 namespace bezel::detail {
 namespace {
 
-/// Boxes and distances that decide are widened by this part of themselves.
-constexpr double widening = 1e-6;
 /// Work of a target element besides its pairs, in candidates for pairs.
 constexpr double work_of_target = 1.0;
-
-Box2 widened(const Box2& box, double by) {
-  double magnitude = 0.0;
-  for (int axis = 0; axis < 2; ++axis)
-    magnitude = std::max({magnitude, std::abs(box.lo[axis]), std::abs(box.hi[axis])});
-  const double room = by + widening * box.diameter() + 2.0 * coordinate_rounding * magnitude;
-  Box2 wide = box;
-  wide.lo -= Vec2{{room, room}};
-  wide.hi += Vec2{{room, room}};
-  return wide;
-}
-
-double nearest_corner(const OverlayMesh& mesh, std::span<const std::int32_t> elements,
-                      const Vec2& p) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const std::int32_t e : elements) {
-    for (const Vec2& corner : mesh.corners(e)) nearest = std::min(nearest, norm(corner - p));
-  }
-  return nearest;
-}
 
 void make_unique(std::vector<std::int32_t>& numbers) {
   std::sort(numbers.begin(), numbers.end());
@@ -66,18 +42,13 @@ std::vector<Share> split_work(const OverlayMesh& donor, const OverlayMesh& targe
   parallel_for(
       chunks,
       [&](std::size_t chunk) {
-        FrontSearch::Memory memory;
         std::vector<std::int32_t> found;
         std::vector<std::int32_t>& all = met[chunk];
         const std::size_t end = std::min(order.size(), (chunk + 1) * chunk_size);
         for (std::size_t i = chunk * chunk_size; i < end; ++i) {
           const Box2& box = target.element_box[static_cast<std::size_t>(order[i])];
-          const Vec2 centre = box.centre();
-          search.query(widened(box, 0.0), {}, memory, found);
-          work[chunk] += work_of_target + static_cast<double>(found.size());
-          if (found.empty()) found.push_back(search.nearest(centre));
-          const double reach = nearest_corner(donor, found, centre) + 0.5 * box.diameter();
-          search.query(widened(box, reach * (1.0 + widening)), {}, memory, found);
+          const std::size_t met_here = donors_in_reach(donor, search, box, found);
+          work[chunk] += work_of_target + static_cast<double>(met_here);
           all.insert(all.end(), found.begin(), found.end());
         }
         make_unique(all);

@@ -131,6 +131,7 @@ std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayM
             result.uncovered.push_back({ElementId(t), outcome.uncovered_area});
           }
           result.uncovered_area += outcome.uncovered_area;
+          result.extension.add(outcome.extension);
           if (outcome.inconsistent) {
             ++result.inconsistent_count;
             if (result.inconsistent < 0) result.inconsistent = t;
@@ -158,6 +159,7 @@ Swept balance(std::span<const ChunkResult> chunks, std::span<const double> donor
   given_area.assign(donor_area.size(), 0.0);
   given_mass.assign(donor_area.size() * components, 0.0);
   swept.made.assign(components, 0.0);
+  ExtensionReport extension;
   std::int32_t inconsistent = -1;
   std::int64_t inconsistent_count = 0;
   for (const ChunkResult& r : chunks) {
@@ -175,6 +177,7 @@ Swept balance(std::span<const ChunkResult> chunks, std::span<const double> donor
     report.overlaps += r.counts.overlaps;
     report.unresolved += r.counts.unresolved;
     report.uncovered_area += r.uncovered_area;
+    extension.add(r.extension);
     report.uncovered_elements.insert(report.uncovered_elements.end(), r.uncovered.begin(),
                                      r.uncovered.end());
     report.max_partition_residual =
@@ -188,6 +191,9 @@ Swept balance(std::span<const ChunkResult> chunks, std::span<const double> donor
     inconsistent_count += r.inconsistent_count;
     if (r.inconsistent >= 0 && inconsistent < 0) inconsistent = r.inconsistent;
   }
+  report.extension_growth = extension.max_growth;
+  report.extension_moved_area = extension.moved_area;
+  report.extension_held_area = extension.held_area;
   std::sort(report.uncovered_elements.begin(), report.uncovered_elements.end());
   if (inconsistent >= 0) {
     throw NumericsError(

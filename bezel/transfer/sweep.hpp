@@ -30,6 +30,7 @@ struct ChunkResult {
   std::vector<std::pair<ElementId, double>> uncovered;
   double uncovered_area = 0;
   double max_partition_residual = 0, max_joint_gap = 0, max_mass_defect = 0;
+  ExtensionReport extension;
   double overlay = 0, integrate = 0, solve = 0;  ///< seconds
   std::int32_t inconsistent = -1;                ///< the first such element
   std::int64_t inconsistent_count = 0;

@@ -18,7 +18,7 @@ namespace bezel {
 /// What happens where a target element is not covered by the donor mesh.
 enum class Uncovered {
   error,   ///< UncoveredError naming elements and areas
-  extend,  ///< the nearest donor polynomial is extended
+  extend,  ///< the nearest donor polynomial is extended, as far as it does not grow too much
   zero     ///< the field counts as zero there
 };
 
@@ -98,8 +98,15 @@ struct FieldReport {
 struct TransferReport {
   std::vector<FieldReport> fields;
   std::int64_t pairs = 0, crossings = 0, tangencies = 0, overlaps = 0, unresolved = 0;
-  double uncovered_area = 0;         ///< target area without donor, in squared length units
-  double outside_area = 0;           ///< donor area without target
+  double uncovered_area = 0;        ///< target area without donor, in squared length units
+  double extension_growth = 0;      ///< largest growth of a continued polynomial beyond its donor's
+                                    ///< coefficients: (sum of |barycentrics|)^degree, limited to
+                                    ///< 2^20; 1 inside, 0 when nothing was continued
+  double extension_moved_area = 0;  ///< target area that another donor than the nearest fills,
+                                    ///< whose polynomial grows much less there
+  double extension_held_area = 0;   ///< target area that is too far from the donors for their
+                                    ///< polynomials: the values are those of places nearer to them
+  double outside_area = 0;          ///< donor area without target
   std::int64_t spread_elements = 0;  ///< target elements that Conserve::total changed
   double max_partition_residual =
       0;  ///< max over targets of |sum of pair areas - covered area| / area

@@ -64,6 +64,9 @@ void expect_same(const TransferResult& a, const TransferResult& b) {
   EXPECT_EQ(a.report.unresolved, b.report.unresolved);
   EXPECT_EQ(a.report.uncovered_area, b.report.uncovered_area);
   EXPECT_EQ(a.report.uncovered_elements, b.report.uncovered_elements);
+  EXPECT_EQ(a.report.extension_growth, b.report.extension_growth);
+  EXPECT_EQ(a.report.extension_moved_area, b.report.extension_moved_area);
+  EXPECT_EQ(a.report.extension_held_area, b.report.extension_held_area);
   EXPECT_EQ(a.report.outside_area, b.report.outside_area);
   EXPECT_EQ(a.report.max_partition_residual, b.report.max_partition_residual);
   EXPECT_EQ(a.report.max_joint_gap, b.report.max_joint_gap);
@@ -187,6 +190,24 @@ TEST(Share, SameBitsWhereFieldsAreContinuedFarAway) {
   options.uncovered = Uncovered::extend;
   options.conserve = Conserve::total;
   check({&f, 1}, turned(square, 0.2, 1.1, {}), options);
+}
+
+// The donors behind a rim of slivers serve beyond it.
+TEST(Share, SameBitsWhereBetterDonorsThanTheNearestServe) {
+  const auto rim = [](double x) {
+    return std::abs(x) < 0.89 ? x / 0.9 * (1.0 - 1e-6)
+                              : std::copysign(1.0 - (1.0 - std::abs(x)) * 1e-5, x);
+  };
+  const MeshPtr donor = test::grid_mesh(20, 1, 1.0, [&](const Vec2& p) {
+    return Vec2{{rim(p[0]), rim(p[1])}};
+  });
+  const Field f = wave(Space::discontinuous(donor, 3));
+  TransferOptions options;
+  options.degree = 1;
+  options.uncovered = Uncovered::extend;
+  const MeshPtr target = turned(test::grid_mesh(20, 1, 1.0, test::same_place), 0.1, 1.2, {});
+  check({&f, 1}, target, options);
+  EXPECT_GT(transfer({&f, 1}, target, options).report.extension_moved_area, 0.1);
 }
 
 // What the whole donor is (of one degree, in one piece) decides; the parts are of one degree and in

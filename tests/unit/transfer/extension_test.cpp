@@ -1,0 +1,136 @@
+// Fields continued beyond the donor mesh, by good elements and by slivers.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bezel/transfer/operator.hpp"
+#include "bezel/transfer/transfer.hpp"
+#include "support/fields.hpp"
+#include "support/meshes.hpp"
+
+namespace bezel {
+namespace {
+
+using test::grid_mesh;
+using test::one;
+
+constexpr std::array<Basis, 2> bases = {Basis::physical, Basis::reference};
+
+/// [-1, 1]^2 with a last column of triangles of the given width; 0.5 is that of all others.
+std::shared_ptr<const TriangleMesh> with_last_column(int g, double width) {
+  return grid_mesh(4, g, 1.0, [width](const Vec2& p) {
+    const double x =
+        p[0] <= 0.5 ? -1.0 + (p[0] + 1.0) * (2.0 - width) / 1.5 : 1.0 - (1.0 - p[0]) * 2.0 * width;
+    return Vec2{{x, p[1] + 0.05 * std::sin(3.0 * p[0])}};
+  });
+}
+
+/// Reaches 0.4 beyond it.
+std::shared_ptr<const TriangleMesh> beyond(int g) {
+  return grid_mesh(4, g, 1.0, [](const Vec2& p) {
+    return Vec2{{1.0 + (p[0] > 0.0 ? 0.4 : 1.0) * p[0], 0.8 * p[1]}};
+  });
+}
+
+Field constant_field(const std::shared_ptr<const Space>& space) {
+  return Field("constant", space, std::vector<double>(space->coefficient_count(), 3.25));
+}
+
+TransferOptions extending() {
+  TransferOptions options;
+  options.uncovered = Uncovered::extend;
+  return options;
+}
+
+class Extension : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Degrees, Extension, ::testing::Values(1, 2, 3, 5, 8));
+
+TEST_P(Extension, ConstantsStayConstantWhateverTheDonor) {
+  const int p = GetParam();
+  for (const int g : {1, 2}) {
+    for (const double width : {0.5, 1e-3, 1e-6}) {
+      for (const Basis basis : bases) {
+        const auto space = Space::discontinuous(with_last_column(g, width), p, basis);
+        const Field f = constant_field(space);
+        const TransferResult moved = transfer({&f, 1}, beyond(g), extending());
+        const TransferResult applied =
+            TransferOperator(space, beyond(g), extending()).transfer({&f, 1});
+        for (const TransferResult* r : {&moved, &applied}) {
+          const std::string at = "g" + std::to_string(g) + " width " + std::to_string(width) +
+                                 (r == &moved ? "" : ", operator");
+          EXPECT_LE(error_norms(r->fields[0], one(Formula("3.25"))).max, 1e-13) << at;
+          EXPECT_LE(r->report.fields[0].relative_mass_defect, 1e-14) << at;
+        }
+      }
+    }
+  }
+}
+
+// 3 is the growth of a donor 0.25 wide 0.25 away; those behind the slivers are twice as far.
+TEST_P(Extension, PolynomialsAreContinuedAsWellAsByGoodDonors) {
+  const int p = GetParam();
+  const Formula polynomial(p < 3 ? "1 + x + 2*y" : "x^3 - x*y^2 + y + 1");
+  double error[2][2] = {};
+  for (std::size_t b = 0; b < 2; ++b) {
+    for (std::size_t thin = 0; thin < 2; ++thin) {
+      const auto space =
+          Space::discontinuous(with_last_column(1, thin == 0 ? 0.5 : 1e-6), p, bases[b]);
+      const std::vector<Field> fields = {sample("u", space, one(polynomial)),
+                                         project("w", space, one(Formula("exp(x)*cos(y)")))};
+      const TransferResult r = transfer(fields, beyond(1), extending());
+      EXPECT_LE(error_norms(r.fields[0], one(polynomial)).max,
+                p < 4 ? 1e-13 : 1e-15 * std::pow(5.0, p))
+          << p;
+      error[b][thin] = error_norms(r.fields[1], one(Formula("exp(x)*cos(y)"))).max;
+      EXPECT_EQ(r.report.extension_held_area, 0.0);
+      if (thin == 0) {
+        EXPECT_EQ(r.report.extension_moved_area, 0.0);
+        EXPECT_LE(r.report.extension_growth, std::pow(3.1, p));
+      } else {
+        EXPECT_NEAR(r.report.extension_moved_area, r.report.uncovered_area, 1e-3);
+      }
+    }
+    EXPECT_LE(error[b][1], 10.0 * error[b][0]) << p;
+  }
+}
+
+TEST_P(Extension, ValuesAreHeldWhereNoDonorReaches) {
+  const int p = GetParam();
+  const auto donor = grid_mesh(4, 1, 1.0, [](const Vec2& x) { return Vec2{{1e-6 * x[0], x[1]}}; });
+  for (const Basis basis : bases) {
+    const auto space = Space::discontinuous(donor, p, basis);
+    const std::vector<Field> fields = {constant_field(space),
+                                       project("w", space, one(Formula("2 + cos(y)")))};
+    const TransferResult r = transfer(fields, beyond(1), extending());
+    EXPECT_LE(error_norms(r.fields[0], one(Formula("3.25"))).max, 1e-13);
+    EXPECT_GE(r.report.extension_held_area, 0.9 * r.report.uncovered_area);
+    EXPECT_LE(r.report.extension_growth, 0x1p20);
+    EXPECT_GE(r.report.fields[1].min_after, 0.0);
+    EXPECT_LE(r.report.fields[1].max_after, 5.0);
+  }
+}
+
+// The moments of a sliver across the target's coordinates lose what the donor's slope multiplies.
+TEST(ThinDonors, PolynomialsComeBackThroughThem) {
+  const Formula cubic("x^3 - x*y^2 + y + 1");
+  for (const int g : {1, 2}) {
+    const auto target = grid_mesh(4, g, 1.0, [](const Vec2& p) {
+      return Vec2{{0.5 + 0.5 * p[0], 0.8 * p[1]}};
+    });
+    const auto space = Space::discontinuous(with_last_column(g, 1e-6), 3, Basis::physical);
+    const std::vector<Field> fields = {sample("u", space, one(cubic)),
+                                       test::checkerboard(space->mesh(), 3, Basis::physical)};
+    const TransferResult r = transfer(fields, target, extending());
+    EXPECT_LE(error_norms(r.fields[0], one(cubic)).max, 1e-12);
+    for (const FieldReport& f : r.report.fields) EXPECT_LE(f.relative_mass_defect, 1e-14) << f.name;
+  }
+}
+
+}  // namespace
+}  // namespace bezel
