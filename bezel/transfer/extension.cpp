@@ -14,7 +14,7 @@ namespace {
 constexpr double widening = 1e-6;
 /// Up to this growth the nearest donor serves: two digits are lost.
 constexpr double small_growth = 256.0;
-/// Where polynomials are not continued any more the values are those at the place that reaches this.
+/// Where polynomials are not continued any more values are those at the place that reaches this.
 constexpr double held_growth = 16.0;
 /// Another donor must grow so many times less to take its place.
 constexpr double much_less = 16.0;
