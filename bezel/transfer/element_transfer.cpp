@@ -201,9 +201,10 @@ std::array<double, 2> ElementTransfer::donor_place(const Group& g, std::int32_t 
   return detail::donor_place(g, donor_, d, x, warm, have_warm);
 }
 
-void ElementTransfer::donor_places(const Group& g, std::int32_t d, std::size_t first) {
+bool ElementTransfer::donor_places(const Group& g, std::int32_t d, std::size_t first) {
   std::array<double, 3> warm{};
   bool have_warm = false;
+  bool all = true;
   const bool together = g.donor_mapped;
   if (together) {
     const Frame guess = affine_frame(donor_.corners(d));
@@ -213,12 +214,17 @@ void ElementTransfer::donor_places(const Group& g, std::int32_t d, std::size_t f
     invert(donor_.degree, donor_.element(d), plane_, start_, inverse_);
   }
   for (std::size_t i = 0; i < plane_.size(); ++i) {
-    const auto place = together && inverse_[i].converged
-                           ? std::array<double, 2>{inverse_[i].lambda[1], inverse_[i].lambda[2]}
-                           : donor_place(g, d, plane_[i], warm, have_warm);
+    if (together && inverse_[i].converged) {
+      du_[first + i] = inverse_[i].lambda[1];
+      dv_[first + i] = inverse_[i].lambda[2];
+      continue;
+    }
+    const auto place = donor_place(g, d, plane_[i], warm, have_warm);
+    all = all && (have_warm || !together);
     du_[first + i] = place[0];
     dv_[first + i] = place[1];
   }
+  return all;
 }
 
 void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
@@ -277,11 +283,11 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
                     push(w, q[0], q[1], 0.0, 0.0);
                     plane_.push_back(x);
                   });
-    donor_places(g, d, first);
+    const bool found_all = donor_places(g, d, first);
     double largest = 1.0;
     for (std::size_t i = first; i < count_; ++i)
       largest = std::max({largest, std::abs(du_[i]), std::abs(dv_[i])});
-    if (std::pow(largest, pd) > steepest_value) {  // a thin donor, as below
+    if (!found_all || std::pow(largest, pd) > steepest_value) {  // a thin donor, as below
       count_ = first;
       const int own_degree = pt + inexact_extra + (2 + pd) * donor_.degree - 2;
       reference_nodes(donor_, d, run, true, own_degree);
@@ -489,7 +495,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
         } else {
           const auto run = run_of(own, k);
           const RunShape shape = run_shape(run);
-          if (fits || (fitted && g.donor_mapped)) {
+          if (fitted && g.donor_mapped) {
             fitted_mass_.assign(nc, 0.0);
             add_pair(g, t, d, run, area, shape.centre, sums_[i], fitted_mass_);
             if (loose_) fit_.mass_of(d, run_begin(k), run_end_[k], area, plane_bridges(), here);

@@ -194,7 +194,8 @@ class ElementTransfer {
   }
   std::array<double, 2> target_place(const Group& g, std::int32_t t, const Vec2& x) const;
   /// Fills in where the points of plane_, the quadrature points from number `first` on, lie in d.
-  void donor_places(const Group& g, std::int32_t d, std::size_t first);
+  /// False where a map could not be inverted.
+  bool donor_places(const Group& g, std::int32_t d, std::size_t first);
   std::array<double, 2> donor_place(const Group& g, std::int32_t d, const Vec2& x,
                                     std::array<double, 3>& warm, bool& have_warm) const;
   void reference_nodes(const OverlayMesh& mesh, std::int32_t element, std::span<const Segment> run,

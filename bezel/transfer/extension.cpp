@@ -5,8 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "bezel/bernstein/triangle_kernel.hpp"
-
 namespace bezel::detail {
 namespace {
 
@@ -28,8 +26,6 @@ constexpr double farthest = 64.0;
 constexpr std::size_t most_others = 16;
 /// Corners say how far an element reaches when their triangle has this part of its area.
 constexpr double least_corner_area = 0.25;
-/// A map is inverted when the point comes back to this part of the element's diameter.
-constexpr double inverted = 1e-6;
 constexpr int halvings = 40;
 
 Box2 widened(const Box2& box, double by) {
@@ -150,14 +146,10 @@ Extension::Try Extension::attempt(const Candidate& c, const Vec2& x) const {
   std::array<double, 3> warm{};
   bool have_warm = false;
   found.place = donor_place(g_, donor_, c.donor, x, warm, have_warm);
-  const auto d = static_cast<std::size_t>(c.donor);
   double sizes;
   if (g_.donor_mapped) {
     sizes = sum_of_sizes(found.place[0], found.place[1]);
-    const Vec2 back = bernstein::kernel::evaluate_unchecked<Vec2, double>(
-        donor_.degree, donor_.element(c.donor).data(),
-        {1.0 - found.place[0] - found.place[1], found.place[0], found.place[1]});
-    found.held = !(norm(back - x) <= inverted * (donor_.element_diameter[d] + norm(x - back)));
+    found.held = !have_warm;
   } else if (c.flat) {
     sizes = 1.0 + 2.0 * norm(x - nearest_on(c.corners, x)) / donor_.element_width(c.donor);
   } else {

@@ -78,7 +78,8 @@ struct Group {
 
 /// Where point x lies for the polynomial of donor element d: barycentrics 1 and 2 in its frame, or
 /// in the reference triangle when it is mapped. `warm`: the last barycentrics found in d, when
-/// have_warm says so.
+/// have_warm says so; of a mapped donor it says in the end whether the map could be inverted at x:
+/// if not, the place is one in the direction of x.
 std::array<double, 2> donor_place(const Group& g, const OverlayMesh& donor, std::int32_t d,
                                   const Vec2& x, std::array<double, 3>& warm, bool& have_warm);
 

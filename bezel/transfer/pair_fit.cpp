@@ -23,6 +23,9 @@ constexpr int more_degrees = 3;
 /// What an interpolant may miss of a function of the donor's coordinates, as a fraction of their
 /// change over the region.
 constexpr double composed_accuracy = 1e-3;
+/// Largest growth of a donor's polynomial from the donor to the points where it is interpolated: in
+/// the box around a region that is thin and lies across the coordinates they are far outside.
+constexpr double steepest_values = 256.0;
 /// Places for donor elements whose maps are kept.
 constexpr std::size_t kept_donors = 256;
 /// Highest degree of fields that are not mapped: above, quadrature is more accurate.
@@ -64,6 +67,22 @@ std::array<double, 2> largest_tails(int m, int p) {
 
 int mass_degree(const OverlayMesh& donor, int degree) {
   return degree + 2 * (donor.degree - 1);
+}
+
+/// Whether polynomials of degree p stay small at the points with these barycentrics 1 and 2.
+bool is_tame(int p, std::size_t padded, const double* u, const double* v) {
+  double largest[lanes] = {};
+  for (std::size_t at = 0; at < padded; at += lanes) {
+    for (std::size_t l = 0; l < lanes; ++l) {
+      const double a = u[at + l], b = v[at + l];
+      const double sizes = std::abs(1.0 - a - b) + std::abs(a) + std::abs(b);
+      largest[l] = sizes > largest[l] ? sizes : largest[l];
+    }
+  }
+  const double most = *std::max_element(largest, largest + lanes);
+  double growth = 1.0;
+  for (int i = 0; i < p; ++i) growth *= most;
+  return growth <= steepest_values;
 }
 
 void zero(std::vector<double>& array, std::size_t size) {
@@ -340,7 +359,8 @@ bool PairFit::place_points(std::int32_t d, int m, int p, const FitFrame& frame) 
     v_[q] = frame.centre[1] + frame.half[1] * table.y[q];
   }
   fit_map(target_map_, table.padded / lanes, u_.data(), v_.data(), x_.data(), y_.data(), nullptr);
-  if (!donor_places(d, table.padded)) return false;
+  if (!donor_places(d, table.padded) || !is_tame(p, table.padded, du_.data(), dv_.data()))
+    return false;
   if (!g_->donor_mapped || p == 0) return true;
   const auto tails = fit_tails(table, du_.data(), dv_.data());
   const auto largest = largest_tails(m, p);
@@ -353,8 +373,8 @@ bool PairFit::add(std::int32_t d, std::size_t begin, std::size_t end, double are
   const Donor& donor = donor_of(d);
   if (g_->donor_mapped)
     donor_mass(donor, begin, end, area, {}, mass);
-  else if (g_->target_mapped)
-    plane_mass(d, begin, end, area, mass);
+  else if (g_->target_mapped && !plane_mass(d, begin, end, area, mass))
+    return false;
   if (!ready_) return false;
   collect(begin, end);
   FitFrame frame = fit_frame(boundary_);
@@ -464,7 +484,7 @@ void PairFit::pull_point(std::int32_t d, const std::array<double, 3>& lambda, co
 }
 
 // Exactly, in the plane.
-void PairFit::plane_mass(std::int32_t d, std::size_t begin, std::size_t end, double area,
+bool PairFit::plane_mass(std::int32_t d, std::size_t begin, std::size_t end, double area,
                          std::span<double> mass) {
   const int pd = g_->donor_space->degree(ElementId(d));
   const Vec2 origin = target_map_.base;
@@ -481,7 +501,7 @@ void PairFit::plane_mass(std::int32_t d, std::size_t begin, std::size_t end, dou
   const FitFrame frame = fit_frame(boundary_);
   if (!(frame.half[0] > 0.0 && frame.half[1] > 0.0)) {
     for (std::size_t c = 0; c < mass.size(); ++c) mass[c] = donor_of(d).mean[c] * area;
-    return;
+    return true;
   }
   const FitTable& table = fit_table(pd);
   const auto nc = static_cast<std::size_t>(g_->components);
@@ -491,6 +511,7 @@ void PairFit::plane_mass(std::int32_t d, std::size_t begin, std::size_t end, dou
     y_[q] = origin[1] + frame.centre[1] + frame.half[1] * table.y[q];
   }
   donor_places(d, table.padded);
+  if (!is_tame(pd, table.padded, du_.data(), dv_.data())) return false;
   fit_values(pd, g_->components, g_->donor_scaled(d).data(), donor_of(d).mean.data(), table.padded,
              du_.data(), dv_.data(), values_.data());
   fit_interpolate(table, g_->components, values_.data(), terms_.data());
@@ -504,6 +525,7 @@ void PairFit::plane_mass(std::int32_t d, std::size_t begin, std::size_t end, dou
         sum += *term * moments_[static_cast<std::size_t>(b) * stride + static_cast<std::size_t>(a)];
     mass[c] = donor_of(d).mean[c] * area + sum * frame.half[0] * frame.half[1];
   }
+  return true;
 }
 
 void PairFit::take(double* product, double* basis) {

@@ -26,10 +26,10 @@ class PairFit {
   /// @param around_a_constant  whether only what differs from one donor's mean is integrated
   void begin(std::size_t i, const Group& g, std::int32_t t, std::span<const Segment> segments,
              bool around_a_constant);
-  /// Adds the pair with donor d, the segments begin .. end; false, and only the mass is found,
-  /// where the maps are too far from affine for it.
+  /// Adds the pair with donor d, the segments begin .. end; false where the maps are too far from
+  /// affine for it, or the region too thin.
   /// @param area  of the pair
-  /// @param mass  out, [component]; where one of the fields is mapped also when the answer is false
+  /// @param mass  out, [component]; of a mapped donor also when the answer is false
   bool add(std::int32_t d, std::size_t begin, std::size_t end, double area, std::span<double> mass);
   /// [component] what is taken off the donors' polynomials.
   std::span<const double> constants() const { return constant_; }
@@ -80,7 +80,7 @@ class PairFit {
   void pull_point(std::int32_t d, const std::array<double, 3>& lambda, const Vec2& step,
                   std::size_t at);
   void append_one_by_one(std::int32_t d, const Part& part, int points);
-  void plane_mass(std::int32_t d, std::size_t begin, std::size_t end, double area,
+  bool plane_mass(std::int32_t d, std::size_t begin, std::size_t end, double area,
                   std::span<double> mass);
 
   const OverlayMesh& donor_;
