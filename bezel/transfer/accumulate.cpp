@@ -1,6 +1,7 @@
 #include "bezel/transfer/accumulate.hpp"
 
 #include <array>
+#include <type_traits>
 #include <vector>
 
 #include "bezel/bernstein/index.hpp"
@@ -12,6 +13,7 @@
 // clang-format off
 #include "hwy/highway.h"
 // clang-format on
+#include "bezel/transfer/vector_lanes.hpp"
 
 #ifndef BEZEL_TRANSFER_ACCUMULATE_ONCE
 #define BEZEL_TRANSFER_ACCUMULATE_ONCE
@@ -64,55 +66,86 @@ inline void powers(int runtime_degree, const double* u, const double* v, double 
   }
 }
 
+/// 1, x, ... x^degree.
+HWY_INLINE void powers_of(int degree, const Lanes& x, Lanes* out) {
+  out[0] = Lanes{} + 1.0;
+  for (int i = 1; i <= degree; ++i) out[i] = out[i - 1] * x;
+}
+
+template <int target_fixed, int donor_fixed, int nc>
+void accumulate_chunk(int target_degree, int donor_degree, int components, const double* scaled,
+                      const PointBlock& points, double* product, double* basis, double* mass) {
+  const int pt = target_fixed >= 0 ? target_fixed : target_degree;
+  const int pd = donor_fixed >= 0 ? donor_fixed : donor_degree;
+  const int nt = bernstein::triangle_size(pt), nd = bernstein::triangle_size(pd);
+  constexpr int room = target_fixed >= 0 ? bernstein::triangle_size(target_fixed) : max_size;
+  Lanes sum[nc][room], plain[room], total[nc];
+  const Lanes zero = Lanes{};
+  for (int c = 0; c < nc; ++c) total[c] = zero;
+  for (int n = 0; n < nt; ++n) {
+    plain[n] = zero;
+    for (int c = 0; c < nc; ++c) sum[c][n] = zero;
+  }
+  for (std::size_t at = 0; at < points.blocks * lanes; at += lanes) {
+    Lanes first[max_degree + 1], second[max_degree + 1];
+    const Lanes one = Lanes{} + 1.0;
+    const Lanes du = load(points.donor_u + at), dv = load(points.donor_v + at);
+    powers_of(pd, one - du - dv, first);
+    powers_of(pd, du, second);
+    Lanes value[nc], third = one;
+    for (int c = 0; c < nc; ++c) value[c] = zero;
+    for (int k = 0, n = 0; k <= pd; ++k) {
+      Lanes row[nc];
+      for (int c = 0; c < nc; ++c) row[c] = zero;
+      for (int j = 0; j <= pd - k; ++j, ++n) {
+        const Lanes psi = first[pd - k - j] * second[j];
+        for (int c = 0; c < nc; ++c) row[c] += scaled[c * nd + n] * psi;
+      }
+      for (int c = 0; c < nc; ++c) value[c] += row[c] * third;
+      third = third * dv;
+    }
+    Lanes w = load(points.weight + at);
+    for (int c = 0; c < nc; ++c) {
+      value[c] = value[c] * w;
+      total[c] += value[c];
+    }
+    const Lanes tu = load(points.target_u + at), tv = load(points.target_v + at);
+    powers_of(pt, one - tu - tv, first);
+    powers_of(pt, tu, second);
+    for (int k = 0, n = 0; k <= pt; ++k) {
+      for (int j = 0; j <= pt - k; ++j, ++n) {
+        const Lanes phi = first[pt - k - j] * second[j];
+        plain[n] += w * phi;
+        for (int c = 0; c < nc; ++c) sum[c][n] += value[c] * phi;
+      }
+      w = w * tv;
+      for (int c = 0; c < nc; ++c) value[c] = value[c] * tv;
+    }
+  }
+  for (int n = 0; n < nt; ++n) {
+    for (int c = 0; c < nc; ++c) product[n * components + c] += sum_of(sum[c][n]);
+    if (basis != nullptr) basis[n] += sum_of(plain[n]);
+  }
+  for (int c = 0; c < nc; ++c) mass[c] += sum_of(total[c]);
+}
+
+/// Three components in one sweep, the basis functions in the first.
 template <int target_fixed, int donor_fixed>
 void accumulate_fixed(int target_degree, int donor_degree, int components, const double* scaled,
                       const PointBlock& points, double* product, double* basis, double* mass) {
-  const int nt = bernstein::triangle_size(target_fixed >= 0 ? target_fixed : target_degree);
-  const int nd = bernstein::triangle_size(donor_fixed >= 0 ? donor_fixed : donor_degree);
-  constexpr int target_room = target_fixed >= 0 ? bernstein::triangle_size(target_fixed) : max_size;
-  constexpr int donor_room = donor_fixed >= 0 ? bernstein::triangle_size(donor_fixed) : max_size;
-  double phi[target_room][lanes];
-  double psi[donor_room][lanes];
-  constexpr int chunk = 3;  // components summed in one sweep
-  for (int c0 = 0; c0 < components; c0 += chunk) {
-    const int nc = components - c0 < chunk ? components - c0 : chunk;
-    double sum[chunk][target_room][lanes] = {};
-    double plain[target_room][lanes] = {};
-    double total[chunk][lanes] = {};
-    for (std::size_t b = 0; b < points.blocks; ++b) {
-      const std::size_t at = b * lanes;
-      powers<target_fixed>(target_degree, points.target_u + at, points.target_v + at, phi);
-      powers<donor_fixed>(donor_degree, points.donor_u + at, points.donor_v + at, psi);
-      const double* w = points.weight + at;
-      for (int c = 0; c < nc; ++c) {
-        const double* f = scaled + (c0 + c) * nd;
-        double value[lanes] = {};
-        for (int n = 0; n < nd; ++n) {
-          for (std::size_t l = 0; l < lanes; ++l) value[l] += f[n] * psi[n][l];
-        }
-        for (std::size_t l = 0; l < lanes; ++l) {
-          value[l] *= w[l];
-          total[c][l] += value[l];
-        }
-        for (int n = 0; n < nt; ++n) {
-          for (std::size_t l = 0; l < lanes; ++l) sum[c][n][l] += value[l] * phi[n][l];
-        }
-      }
-      if (c0 == 0) {
-        for (int n = 0; n < nt; ++n) {
-          for (std::size_t l = 0; l < lanes; ++l) plain[n][l] += w[l] * phi[n][l];
-        }
-      }
-    }
-    const auto fold = [](const double* x) {
-      return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
+  const int nd = bernstein::triangle_size(donor_degree);
+  for (int c = 0; c < components; c += 3) {
+    const auto sweep = [&](auto count) {
+      accumulate_chunk<target_fixed, donor_fixed, decltype(count)::value>(
+          target_degree, donor_degree, components, scaled + c * nd, points, product + c,
+          c == 0 ? basis : nullptr, mass + c);
     };
-    for (int c = 0; c < nc; ++c) {
-      for (int n = 0; n < nt; ++n) product[n * components + c0 + c] += fold(sum[c][n]);
-      mass[c0 + c] += fold(total[c]);
-    }
-    if (c0 == 0) {
-      for (int n = 0; n < nt; ++n) basis[n] += fold(plain[n]);
+    if (components - c == 1) {
+      sweep(std::integral_constant<int, 1>());
+    } else if (components - c == 2) {
+      sweep(std::integral_constant<int, 2>());
+    } else {
+      sweep(std::integral_constant<int, 3>());
     }
   }
 }

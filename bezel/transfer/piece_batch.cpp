@@ -64,6 +64,7 @@ HWY_INLINE void part_control(const Lanes* p, const Lanes& r, const Lanes& s, Lan
 
 /// Rows become columns.
 HWY_INLINE void transpose(Lanes* r) {
+#if HWY_TARGET <= HWY_AVX3
   Lanes t[8], u[8];
 #pragma GCC unroll 4
   for (int i = 0; i < 8; i += 2) {
@@ -83,6 +84,13 @@ HWY_INLINE void transpose(Lanes* r) {
     r[i] = __builtin_shufflevector(u[i], u[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
     r[i + 4] = __builtin_shufflevector(u[i], u[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
   }
+#else
+  double rows[lanes][lanes], columns[lanes][lanes];
+  std::memcpy(rows, r, sizeof rows);
+  for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t k = 0; k < lanes; ++k) columns[k][i] = rows[i][k];
+  std::memcpy(r, columns, sizeof columns);
+#endif
 }
 
 /// The pieces' control points in the coordinates of `place`.
@@ -256,8 +264,8 @@ void region_sums_target(const PieceTable& table, int degree, const Vec2& origin,
 
 /// x := max(x, |y|)
 HWY_INLINE void raise(Lanes& x, const Lanes& y) {
-  x = x < y ? y : x;
-  x = x < -y ? -y : x;
+  x = select(x < y, y, x);
+  x = select(x < -y, -y, x);
 }
 
 alignas(64) constexpr double zeros[2 * lanes] = {};
@@ -308,10 +316,10 @@ void add_regions(const TargetPlace& place, const PieceBatch& batch, std::size_t 
   kept = load(keep);
   const auto near = (power <= steepest) & (kept > 0.0);
   const Lanes none{};
-  for (Lanes& x : m) x = near ? x : none;
-  s = near ? s : none;
-  t = near ? t : none;
-  const Lanes scale = near ? none + place.area : none;
+  for (Lanes& x : m) x = select(near, x, none);
+  s = select(near, s, none);
+  t = select(near, t, none);
+  const Lanes scale = select(near, none + place.area, none);
   store(scale, keep);
   for (std::size_t l = 0; l < regions.size(); ++l)
     regions[l].far = regions[l].donor != nullptr && keep[l] == 0.0;

@@ -206,9 +206,9 @@ void curve_target(int degree, const double* px, const double* py, double from, d
 /// 1, x, ... x^7.
 HWY_INLINE void eight_powers(double x, Lanes& out) {
   const double x2 = x * x, x4 = x2 * x2;
-  const Lanes one = {1, x, 1, x, 1, x, 1, x};
-  const Lanes two = {1, 1, x2, x2, 1, 1, x2, x2};
-  const Lanes four = {1, 1, 1, 1, x4, x4, x4, x4};
+  const Lanes one = lanes_of(1, x, 1, x, 1, x, 1, x);
+  const Lanes two = lanes_of(1, 1, x2, x2, 1, 1, x2, x2);
+  const Lanes four = lanes_of(1, 1, 1, 1, x4, x4, x4, x4);
   out = one * two * four;
 }
 
@@ -330,26 +330,51 @@ void tails_target(std::size_t count, std::size_t high, const double* matrix, con
   }
 }
 
-/// Sums of w psi_i psi_j and w psi_i over points, psi the powers of a degree.
+/// Sums of w times the powers of a degree over points.
+HWY_INLINE void add_powers(int degree, const Lanes& w, const Lanes& u, const Lanes& v,
+                           Lanes* sums) {
+  Lanes first[2 * max_fit_powers + 1], second[2 * max_fit_powers + 1];
+  const Lanes rest = 1.0 - u - v;
+  first[0] = second[0] = Lanes{} + 1.0;
+  for (int i = 1; i <= degree; ++i) {
+    first[i] = first[i - 1] * rest;
+    second[i] = second[i - 1] * u;
+  }
+  Lanes third = w;
+  for (int k = 0; k <= degree; ++k) {
+    for (int j = 0; j <= degree - k; ++j, ++sums)
+      *sums += (first[degree - k - j] * second[j]) * third;
+    third *= v;
+  }
+}
+
+/// Sums of w psi_i psi_j and w psi_i over points, psi the powers of a degree: the products are the
+/// powers of twice the degree.
 void products_target(int degree, std::size_t padded, const double* weight, const double* u,
                      const double* v, double* products, double* integrals) {
-  constexpr auto most = static_cast<std::size_t>(bernstein::triangle_size(max_fit_powers));
-  const auto size = static_cast<std::size_t>(bernstein::triangle_size(degree));
-  Lanes psi[most], plain[most], sums[most * (most + 1) / 2];
-  for (std::size_t i = 0; i < size; ++i) plain[i] = Lanes{};
-  for (std::size_t i = 0; i < size * (size + 1) / 2; ++i) sums[i] = Lanes{};
+  Lanes twice[bernstein::triangle_size(2 * max_fit_powers)];
+  Lanes once[bernstein::triangle_size(max_fit_powers)];
+  const int size = bernstein::triangle_size(degree);
+  const int all = bernstein::triangle_size(2 * degree);
+  for (int i = 0; i < size; ++i) once[i] = Lanes{};
+  for (int i = 0; i < all; ++i) twice[i] = Lanes{};
   for (std::size_t at = 0; at < padded; at += lanes) {
     const Lanes s = load(u + at), t = load(v + at), w = load(weight + at);
-    powers_of<-1>(degree, s, t, psi);
-    Lanes* sum = sums;
-    for (std::size_t i = 0; i < size; ++i) {
-      const Lanes own = w * psi[i];
-      plain[i] += own;
-      for (std::size_t j = 0; j <= i; ++j, ++sum) *sum += own * psi[j];
+    add_powers(degree, w, s, t, once);
+    add_powers(2 * degree, w, s, t, twice);
+  }
+  for (int i = 0; i < size; ++i) integrals[i] = sum_of(once[i]);
+  double sums[bernstein::triangle_size(2 * max_fit_powers)];
+  for (int i = 0; i < all; ++i) sums[i] = sum_of(twice[i]);
+  for (int k = 0; k <= degree; ++k) {
+    for (int j = 0; j <= degree - k; ++j) {
+      for (int l = 0; l <= k; ++l) {
+        const double* from = sums + bernstein::triangle_index(2 * degree, j, k + l);
+        const int last = l < k ? degree - l : j;
+        for (int i = 0; i <= last; ++i) *products++ = from[i];
+      }
     }
   }
-  for (std::size_t i = 0; i < size; ++i) integrals[i] = sum_of(plain[i]);
-  for (std::size_t i = 0; i < size * (size + 1) / 2; ++i) products[i] = sum_of(sums[i]);
 }
 
 void interpolate_target(std::size_t count, std::size_t padded, std::size_t terms,

@@ -7,6 +7,8 @@
 #define BEZEL_TRANSFER_VECTOR_LANES_HPP
 #endif
 
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 
 #include "bezel/transfer/lanes.hpp"
@@ -18,9 +20,127 @@
 HWY_BEFORE_NAMESPACE();
 namespace bezel::detail::HWY_NAMESPACE {
 
-// Eight numbers side by side: the compiler's vectors (g++ and clang), split into registers where
-// they are narrower. Nothing is fused, so every target gives the same bits.
+// Eight numbers side by side, as one of the compiler's vectors (g++ and clang) where registers are
+// that wide. Nothing is fused, so every target gives the same bits.
+#if HWY_TARGET <= HWY_AVX3
+
 using Lanes [[gnu::vector_size(sizeof(double) * lanes)]] = double;
+
+HWY_INLINE Lanes lanes_of(double a, double b, double c, double d, double e, double f, double g,
+                          double h) {
+  return Lanes{a, b, c, d, e, f, g, h};
+}
+template <class Mask>
+HWY_INLINE Lanes select(const Mask& mask, const Lanes& yes, const Lanes& no) {
+  return mask ? yes : no;
+}
+
+#else
+
+// Elsewhere as several of them: g++ takes vectors wider than the registers apart by way of memory,
+// which is five times as slow.
+#if HWY_TARGET <= HWY_AVX2
+constexpr std::size_t part_size = lanes / 2;
+#else
+constexpr std::size_t part_size = lanes / 4;
+#endif
+constexpr std::size_t part_count = lanes / part_size;
+
+struct Lanes {
+  using Part [[gnu::vector_size(sizeof(double) * part_size)]] = double;
+  using Truth = decltype(Part{} < Part{});
+  struct Mask {
+    Truth part[part_count];
+    HWY_INLINE std::int64_t operator[](std::size_t l) const {
+      return part[l / part_size][l % part_size];
+    }
+    friend HWY_INLINE Mask operator&(const Mask& a, const Mask& b) {
+      return each<Mask>([&](std::size_t i) -> Truth { return a.part[i] & b.part[i]; });
+    }
+  };
+  Part part[part_count];
+
+  template <class Result, class Make>
+  HWY_INLINE static Result each(const Make& make) {
+    Result r;
+#pragma GCC unroll 4
+    for (std::size_t i = 0; i < part_count; ++i) r.part[i] = make(i);
+    return r;
+  }
+  HWY_INLINE static Lanes all(double x) {
+    return each<Lanes>([&](std::size_t) -> Part { return Part{} + x; });
+  }
+  HWY_INLINE double operator[](std::size_t l) const {
+    return part[l / part_size][l % part_size];
+  }
+  HWY_INLINE Lanes operator-() const {
+    return each<Lanes>([&](std::size_t i) -> Part { return -part[i]; });
+  }
+  friend HWY_INLINE Lanes operator+(const Lanes& a, const Lanes& b) {
+    return each<Lanes>([&](std::size_t i) -> Part { return a.part[i] + b.part[i]; });
+  }
+  friend HWY_INLINE Lanes operator-(const Lanes& a, const Lanes& b) {
+    return each<Lanes>([&](std::size_t i) -> Part { return a.part[i] - b.part[i]; });
+  }
+  friend HWY_INLINE Lanes operator*(const Lanes& a, const Lanes& b) {
+    return each<Lanes>([&](std::size_t i) -> Part { return a.part[i] * b.part[i]; });
+  }
+  friend HWY_INLINE Lanes operator/(const Lanes& a, const Lanes& b) {
+    return each<Lanes>([&](std::size_t i) -> Part { return a.part[i] / b.part[i]; });
+  }
+  friend HWY_INLINE Lanes operator+(const Lanes& a, double b) {
+    return a + all(b);
+  }
+  friend HWY_INLINE Lanes operator-(const Lanes& a, double b) {
+    return a - all(b);
+  }
+  friend HWY_INLINE Lanes operator*(const Lanes& a, double b) {
+    return a * all(b);
+  }
+  friend HWY_INLINE Lanes operator+(double a, const Lanes& b) {
+    return all(a) + b;
+  }
+  friend HWY_INLINE Lanes operator-(double a, const Lanes& b) {
+    return all(a) - b;
+  }
+  friend HWY_INLINE Lanes operator*(double a, const Lanes& b) {
+    return all(a) * b;
+  }
+  friend HWY_INLINE Lanes operator/(double a, const Lanes& b) {
+    return all(a) / b;
+  }
+  HWY_INLINE Lanes& operator+=(const Lanes& b) {
+    return *this = *this + b;
+  }
+  HWY_INLINE Lanes& operator*=(const Lanes& b) {
+    return *this = *this * b;
+  }
+  HWY_INLINE Lanes& operator-=(double b) {
+    return *this = *this - b;
+  }
+  HWY_INLINE Lanes& operator*=(double b) {
+    return *this = *this * b;
+  }
+  friend HWY_INLINE Mask operator<(const Lanes& a, const Lanes& b) {
+    return each<Mask>([&](std::size_t i) -> Truth { return a.part[i] < b.part[i]; });
+  }
+  friend HWY_INLINE Mask operator<=(const Lanes& a, double b) {
+    return each<Mask>([&](std::size_t i) -> Truth { return a.part[i] <= Part{} + b; });
+  }
+  friend HWY_INLINE Mask operator>(const Lanes& a, double b) {
+    return each<Mask>([&](std::size_t i) -> Truth { return a.part[i] > Part{} + b; });
+  }
+  friend HWY_INLINE Mask operator==(const Lanes& a, const Lanes& b) {
+    return each<Mask>([&](std::size_t i) -> Truth { return a.part[i] == b.part[i]; });
+  }
+};
+
+HWY_INLINE Lanes select(const Lanes::Mask& mask, const Lanes& yes, const Lanes& no) {
+  return Lanes::each<Lanes>(
+      [&](std::size_t i) -> Lanes::Part { return mask.part[i] ? yes.part[i] : no.part[i]; });
+}
+
+#endif
 
 HWY_INLINE Lanes load(const double* p) {
   Lanes x;
@@ -30,6 +150,13 @@ HWY_INLINE Lanes load(const double* p) {
 HWY_INLINE void store(const Lanes& x, double* p) {
   std::memcpy(p, &x, sizeof x);
 }
+#if !(HWY_TARGET <= HWY_AVX3)
+HWY_INLINE Lanes lanes_of(double a, double b, double c, double d, double e, double f, double g,
+                          double h) {
+  const double all[lanes] = {a, b, c, d, e, f, g, h};
+  return load(all);
+}
+#endif
 HWY_INLINE double sum_of(const Lanes& x) {
   return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
 }
