@@ -26,6 +26,9 @@ constexpr std::array<Function, 3> functions = {{{"zeta1", "5*y^3 + x^2 + 2*y + 3
                                                 {"zeta2", "exp(x^2) + 2*y"},
                                                 {"zeta3", "sin(x) + cos(y)"}}};
 constexpr std::array<const char*, 3> degree_names = {"linear", "quadratic", "cubic"};
+// Of lines of the physical and the reference basis.
+constexpr std::array<std::array<const char*, 2>, 3> degree_colours = {
+    {{"#0072b2", "#56b4e9"}, {"#b34700", "#f0a050"}, {"#00664b", "#5fc9a5"}}};
 constexpr int most_levels = 5;
 
 /// Relative L2 errors read off the plots of [hermes2018, fig. 4.17] (axis calibration +-4 %); 0:
@@ -137,7 +140,10 @@ void add_errors(StudyReport& report, std::size_t f, const Levels& levels) {
   for (std::size_t k = 0; k < levels.size(); ++k) {
     Series physical{fmt::format("{}, physical", degree_names[k]), {}, {}};
     Series reference{fmt::format("{}, reference", degree_names[k]), {}, {}};
-    Series theirs{fmt::format("{}, published", degree_names[k]), {}, {}, true};
+    Series theirs{k + 1 == levels.size() ? "published" : "", {}, {}, true};
+    physical.colour = degree_colours[k][0];
+    reference.colour = degree_colours[k][1];
+    theirs.colour = "#777777";
     for (std::size_t i = 0; i < levels[k].size(); ++i) {
       // Without a coarser level, one of error 0 stands in: no order.
       const Level& at = levels[k][i];
