@@ -274,7 +274,6 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
     region_sums(piece_table(target_.degree, 2 * degree), 2 * degree, origin_, place, own.pieces,
                 own.donors.size(), batch_);
   }
-  const auto size = static_cast<std::size_t>(bernstein::triangle_size(degree));
   const double* some = nullptr;
   regions_.clear();
   for (const std::int32_t d : own.donors) {
@@ -288,7 +287,7 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
   }
   // Constants come back whatever the rounding of the moments when they are not integrated at all.
   double* base = base_[i].data();
-  for (std::size_t c = 0; c < nc; ++c) base[c] = some != nullptr ? some[c * size] : 0.0;
+  for (std::size_t c = 0; c < nc; ++c) base[c] = some != nullptr ? some[c] : 0.0;
   Accumulators& sums = moment_sums_[i];
   add_batch(degree, place, batch_, regions_, g.components, base, sums.product.data(),
             sums.basis.data(), mass.data());

@@ -380,7 +380,9 @@ void ElementTransfer::choose_base(std::size_t i, const ElementPieces& own) {
 void ElementTransfer::begin_moments(std::size_t i) {
   if (have_moments_[i] != 0) return;
   have_moments_[i] = 1;
-  moment_sums_[i].reset(sums_[i].basis.size(), static_cast<std::size_t>(groups_[i].components));
+  Accumulators& sums = moment_sums_[i];
+  sums.reset(sums_[i].basis.size(), static_cast<std::size_t>(groups_[i].components));
+  sums.product.resize(sums.product.size() + batch_padding, 0.0);
 }
 
 ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own, GivenList& given,
@@ -400,7 +402,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
   }
   const auto corners = target_.corners(t);
   origin_ = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
-  masses_.assign(components, 0.0);
+  masses_.assign(components + batch_padding, 0.0);
 
   // The regions: shape and area do not depend on the fields.
   const bool batch =
@@ -414,38 +416,32 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
   const bool summed = shape_regions(t, own, first_batched, outcome);
   double total = 0.0;
   double extended = 0.0;
-  const std::size_t regions = own.donors.size(), first_given = given.donor.size();
-  given.target.resize(first_given + regions, t);
-  given.donor.resize(first_given + regions);
-  given.area.resize(first_given + regions);
-  std::size_t pairs = first_given;
+  const std::size_t regions = own.donors.size();
+  mass_row_.resize(regions);
   for (std::size_t k = 0; k < regions; ++k) {
     const std::int32_t d = own.donors[k];
     const double area = area_[k];
     total += area;
+    mass_row_[k] = -1;
     if (d == exterior) {
       outcome.uncovered_area = std::max(area, 0.0);
       continue;
     }
     outcome.covered_area += area;
-    given.donor[pairs] = d;
-    given.area[pairs] = area;
-    ++pairs;
+    ++outcome.pairs;
+    given.target.push_back(t);
+    given.donor.push_back(d);
+    given.area.push_back(area);
+    mass_row_[k] = add_mass_row(given);
   }
-  if (pairs < first_given + regions) {
-    given.target.resize(pairs);
-    given.donor.resize(pairs);
-    given.area.resize(pairs);
-  }
-  outcome.pairs = static_cast<std::int32_t>(pairs - first_given);
-  given.mass.resize(pairs * components);
+  given.mass.resize(given.massed.size() * components);
 
   std::size_t c0 = 0;
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     const Group& g = groups_[i];
     const auto nc = static_cast<std::size_t>(g.components);
     region_mass_.assign(own.donors.size() * nc, 0.0);
-    base_[i].assign(nc, 0.0);
+    base_[i].assign(nc + batch_padding, 0.0);
     const bool batched = batch && batched_[i] != 0;
     if (batched) {
       begin_moments(i);
@@ -457,12 +453,11 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
     const bool fits = fitted && !loose_;
     if (fitted) {
       fit_.begin(i, g, t, all_runs(own), blocks == nullptr);
-      base_[i].assign(fit_.constants().begin(), fit_.constants().end());
+      std::copy(fit_.constants().begin(), fit_.constants().end(), base_[i].begin());
     } else if (!batched && blocks == nullptr) {
       choose_base(i, own);
     }
-    taken_ = base_[i];
-    double* to = given.mass.data() + first_given * components + c0;
+    taken_ = std::span(base_[i]).first(nc);
     for (std::size_t k = 0; k < own.donors.size(); ++k) {
       const std::int32_t d = own.donors[k];
       const double area = area_[k];
@@ -499,8 +494,11 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
       }
       for (std::size_t c = 0; c < nc; ++c) masses_[c0 + c] += here[c];
       if (d == exterior) continue;
-      for (std::size_t c = 0; c < nc; ++c) to[c] = here[c];
-      to += components;
+      if (mass_row_[k] >= 0)
+        std::copy(
+            here.begin(), here.end(),
+            given.mass.begin() + static_cast<std::ptrdiff_t>(
+                                     static_cast<std::size_t>(mass_row_[k]) * components + c0));
       if (blocks != nullptr) keep_pair(d, sums_[i], here, *blocks);
     }
     if (fits) fit_.take(sums_[i].product.data(), sums_[i].basis.data());

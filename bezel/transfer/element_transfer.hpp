@@ -34,13 +34,14 @@ struct ElementOutcome {
   bool inconsistent = false;  ///< the pieces around some T n D do not close
 };
 
-/// Masses and areas that donor elements gave, for the balance of what lies outside the target: one
+/// Areas that donor elements gave, and masses for the balance of what lies outside the target: one
 /// entry a pair.
 struct GivenList {
   std::vector<std::int32_t> donor;
-  std::vector<std::int32_t> target;  ///< filled by the caller of process()
+  std::vector<std::int32_t> target;
   std::vector<double> area;
-  std::vector<double> mass;  ///< per entry all groups' components in order
+  std::vector<std::int32_t> massed;  ///< entries whose masses are kept
+  std::vector<double> mass;          ///< per such entry all groups' components in order
 };
 
 /// The pairs of one target element kept apart: what each donor's basis functions give it.
@@ -67,6 +68,8 @@ class ElementTransfer {
   /// there instead of being added up.
   ElementOutcome process(std::int32_t t, const ElementPieces& own, GivenList& given,
                          std::span<double> made, ElementBlocks* blocks = nullptr);
+  /// From now on only masses given by these donor elements are kept (nonzero; empty: all).
+  void keep_masses_of(std::span<const std::uint8_t> donors) { keep_masses_of_ = donors; }
 
  private:
   struct Node {
@@ -98,6 +101,15 @@ class ElementTransfer {
   /// Starts and steps of bridges_ in the plane.
   std::span<const std::array<Vec2, 2>> plane_bridges();
   bool is_closed(std::int32_t t, std::int32_t d, double gap) const;
+  /// The row of the masses of the entry last added to the list, or -1 when they are not kept.
+  std::int32_t add_mass_row(GivenList& given) const {
+    const auto entry = given.donor.size() - 1;
+    if (!keep_masses_of_.empty() &&
+        keep_masses_of_[static_cast<std::size_t>(given.donor[entry])] == 0)
+      return -1;
+    given.massed.push_back(static_cast<std::int32_t>(entry));
+    return static_cast<std::int32_t>(given.massed.size() - 1);
+  }
   void give_strips(std::int32_t t, const ElementPieces& own, std::size_t components,
                    GivenList& given, std::span<double> made);
   double largest_partition_residual(std::int32_t t) const;
@@ -197,7 +209,9 @@ class ElementTransfer {
   const FrontSearch& search_;
   std::span<Group> groups_;
   Uncovered policy_;
-  std::uint64_t elements_ = 0;  // done so far
+  std::span<const std::uint8_t> keep_masses_of_;
+  std::vector<std::int32_t> mass_row_;  // by region: of the list of masses, or -1
+  std::uint64_t elements_ = 0;          // done so far
   std::vector<IntervalRule> rules_;
   std::vector<Node> nodes_;
   Vec2 origin_;  // of the pieces' control points, on the target element
