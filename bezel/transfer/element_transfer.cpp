@@ -38,6 +38,7 @@ ElementTransfer::ElementTransfer(const OverlayMesh& donor, const OverlayMesh& ta
       moment_sums_(groups.size()),
       whole_(groups.size()),
       base_(groups.size()),
+      functions_(groups.size()),
       have_moments_(groups.size()),
       extended_(groups.size()),
       batched_(groups.size()),
@@ -47,10 +48,12 @@ ElementTransfer::ElementTransfer(const OverlayMesh& donor, const OverlayMesh& ta
     batched_[i] = can_batch(groups[i]) ? 1 : 0;
     fitted_[i] = batched_[i] == 0 && PairFit::can(groups[i], donor, target) ? 1 : 0;
   }
+  all_batched_ = std::find(batched_.begin(), batched_.end(), 0) == batched_.end();
 }
 
-void ElementTransfer::Accumulators::reset(std::size_t functions, std::size_t components) {
-  product.assign(functions * components, 0.0);
+void ElementTransfer::Accumulators::reset(std::size_t functions, std::size_t components,
+                                          std::size_t padding) {
+  product.assign(functions * components + padding, 0.0);
   basis.assign(functions, 0.0);
   mass.assign(components, 0.0);
 }
@@ -380,9 +383,8 @@ void ElementTransfer::choose_base(std::size_t i, const ElementPieces& own) {
 void ElementTransfer::begin_moments(std::size_t i) {
   if (have_moments_[i] != 0) return;
   have_moments_[i] = 1;
-  Accumulators& sums = moment_sums_[i];
-  sums.reset(sums_[i].basis.size(), static_cast<std::size_t>(groups_[i].components));
-  sums.product.resize(sums.product.size() + batch_padding, 0.0);
+  moment_sums_[i].reset(functions_[i], static_cast<std::size_t>(groups_[i].components),
+                        batch_padding);
 }
 
 ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own, GivenList& given,
@@ -393,9 +395,8 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
   std::size_t components = 0;
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     const Group& g = groups_[i];
-    sums_[i].reset(
-        static_cast<std::size_t>(bernstein::triangle_size(g.target_space->degree(ElementId(t)))),
-        static_cast<std::size_t>(g.components));
+    functions_[i] =
+        static_cast<std::size_t>(bernstein::triangle_size(g.target_space->degree(ElementId(t))));
     components += static_cast<std::size_t>(g.components);
     have_moments_[i] = 0;
     extended_[i] = 0;
@@ -414,6 +415,12 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
   have_segments_ = false;
   loose_ = own.loose();
   const bool summed = shape_regions(t, own, first_batched, outcome);
+  if (plain_ && all_batched_ && keeps_no_mass(own.donors)) {
+    process_plain(t, own, first_batched, given, outcome);
+    return outcome;
+  }
+  for (std::size_t i = 0; i < groups_.size(); ++i)
+    sums_[i].reset(functions_[i], static_cast<std::size_t>(groups_[i].components));
   double total = 0.0;
   double extended = 0.0;
   const std::size_t regions = own.donors.size();
@@ -507,16 +514,59 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
     c0 += nc;
   }
   if (loose_ && blocks == nullptr && components > 0) give_strips(t, own, components, given, made);
+  note_partition(t, total, outcome);
+  finish_groups(t, outcome.covered_area + extended, batch, blocks, outcome);
+  return outcome;
+}
+
+void ElementTransfer::note_partition(std::int32_t t, double total, ElementOutcome& outcome) const {
+  const double own_area = target_.element_area[static_cast<std::size_t>(t)];
   outcome.partition_residual = std::abs(total - own_area) / own_area;
   if (outcome.partition_residual > largest_joint_gap &&
       outcome.partition_residual > largest_partition_residual(t))
     outcome.inconsistent = true;
-  const double integrated = outcome.covered_area + extended;
+}
+
+bool ElementTransfer::keeps_no_mass(std::span<const std::int32_t> donors) const {
+  if (keep_masses_of_.empty()) return false;
+  std::uint8_t any = 0;
+  for (const std::int32_t d : donors) any |= keep_masses_of_[static_cast<std::size_t>(d)];
+  return any == 0;
+}
+
+void ElementTransfer::process_plain(std::int32_t t, const ElementPieces& own,
+                                    std::size_t first_batched, GivenList& given,
+                                    ElementOutcome& outcome) {
+  const std::size_t regions = own.donors.size();
+  given.target.insert(given.target.end(), regions, t);
+  given.donor.insert(given.donor.end(), own.donors.begin(), own.donors.end());
+  given.area.insert(given.area.end(), area_.begin(), area_.end());
+  outcome.pairs = static_cast<std::int32_t>(regions);
+  for (const double area : area_) outcome.covered_area += area;
+  masses_.clear();
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    const auto nc = static_cast<std::size_t>(groups_[i].components);
+    if (region_mass_.size() < regions * nc) region_mass_.resize(2 * regions * nc);
+    base_[i].resize(nc + batch_padding);
+    begin_moments(i);
+    add_batched(i, t, own, i == first_batched, region_mass_);
+    const std::size_t c0 = masses_.size();
+    masses_.resize(c0 + nc, 0.0);
+    for (std::size_t k = 0; k < regions; ++k)
+      for (std::size_t c = 0; c < nc; ++c) masses_[c0 + c] += region_mass_[k * nc + c];
+  }
+  masses_.resize(masses_.size() + batch_padding);
+  note_partition(t, outcome.covered_area, outcome);
+  finish_groups(t, outcome.covered_area, true, nullptr, outcome);
+}
+
+void ElementTransfer::finish_groups(std::int32_t t, double integrated, bool batch,
+                                    ElementBlocks* blocks, ElementOutcome& outcome) {
   // Reading the clock takes as long as a small solution: every so many elements are measured.
   const bool timed = elements_++ % timed_elements == 0;
   const auto start =
       timed ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
-  c0 = 0;
+  std::size_t c0 = 0;
   if (blocks != nullptr) finish_blocks(groups_[0], t, sums_[0], integrated, *blocks, outcome);
   for (std::size_t i = 0; i < groups_.size() && blocks == nullptr; ++i) {
     const auto nc = static_cast<std::size_t>(groups_[i].components);
@@ -524,7 +574,10 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
     const std::span<double> result = groups_[i].target_out(t);
     c0 += nc;
     if (finish_straight(i, t, mass, integrated, result, outcome)) continue;
-    if (have_moments_[i] != 0) moments_to_powers(i, t);
+    if (have_moments_[i] != 0) {
+      if (extended_[i] == 0) sums_[i].reset(functions_[i], nc);
+      moments_to_powers(i, t);
+    }
     std::span<const double> whole;
     if (outcome.uncovered_area == 0.0 && batch) whole = whole_[i];
     finish(groups_[i], t, sums_[i], whole, mass, base_[i], integrated, result, outcome);
@@ -534,7 +587,6 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
         static_cast<double>(timed_elements) *
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
-  return outcome;
 }
 
 }  // namespace bezel::detail
