@@ -21,7 +21,7 @@ HWY_BEFORE_NAMESPACE();
 namespace bezel::detail::HWY_NAMESPACE {
 
 // Eight numbers side by side, as one of the compiler's vectors (g++ and clang) where registers are
-// that wide. Nothing is fused, so every target gives the same bits.
+// that wide. Only mul_add() is fused, so every target that can fuse gives the same bits.
 #if HWY_TARGET <= HWY_AVX3
 
 using Lanes [[gnu::vector_size(sizeof(double) * lanes)]] = double;
@@ -68,7 +68,7 @@ struct Lanes {
     return r;
   }
   HWY_INLINE static Lanes all(double x) {
-    return each<Lanes>([&](std::size_t) -> Part { return Part{} + x; });
+    return each<Lanes>([&](std::size_t) -> Part { return x - Part{}; });
   }
   HWY_INLINE double operator[](std::size_t l) const {
     return part[l / part_size][l % part_size];
@@ -97,6 +97,9 @@ struct Lanes {
   friend HWY_INLINE Lanes operator*(const Lanes& a, double b) {
     return a * all(b);
   }
+  friend HWY_INLINE Lanes operator/(const Lanes& a, double b) {
+    return a / all(b);
+  }
   friend HWY_INLINE Lanes operator+(double a, const Lanes& b) {
     return all(a) + b;
   }
@@ -114,6 +117,9 @@ struct Lanes {
   }
   HWY_INLINE Lanes& operator*=(const Lanes& b) {
     return *this = *this * b;
+  }
+  HWY_INLINE Lanes& operator-=(const Lanes& b) {
+    return *this = *this - b;
   }
   HWY_INLINE Lanes& operator-=(double b) {
     return *this = *this - b;
@@ -157,6 +163,43 @@ HWY_INLINE Lanes lanes_of(double a, double b, double c, double d, double e, doub
   return load(all);
 }
 #endif
+/// The first `count` numbers, at most eight.
+HWY_INLINE void store_part(const Lanes& x, double* p, std::size_t count) {
+  if (count >= lanes) return store(x, p);
+  for (std::size_t l = 0; l < count; ++l) p[l] = x[l];
+}
+
+/// a b + c, rounded once where the target can.
+HWY_INLINE double mul_add(double a, double b, double c) {
+#if HWY_NATIVE_FMA
+  return __builtin_fma(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
+HWY_INLINE Lanes mul_add(const Lanes& a, const Lanes& b, const Lanes& c) {
+#if HWY_NATIVE_FMA
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::CappedTag<double, lanes> d;
+  alignas(64) double x[lanes], y[lanes], z[lanes];
+  store(a, x);
+  store(b, y);
+  store(c, z);
+  for (std::size_t i = 0; i < lanes; i += hn::Lanes(d))
+    hn::StoreU(hn::MulAdd(hn::LoadU(d, x + i), hn::LoadU(d, y + i), hn::LoadU(d, z + i)), d, z + i);
+  return load(z);
+#else
+  return a * b + c;
+#endif
+}
+HWY_INLINE Lanes mul_add(double a, const Lanes& b, const Lanes& c) {
+#if HWY_TARGET <= HWY_AVX3
+  return mul_add(Lanes{a, a, a, a, a, a, a, a}, b, c);
+#else
+  return mul_add(Lanes::all(a), b, c);
+#endif
+}
+
 HWY_INLINE double sum_of(const Lanes& x) {
   return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
 }
