@@ -293,7 +293,7 @@ HWY_INLINE void place_regions(const TargetPlace& place, const PieceBatch& batch,
                               std::span<BatchRegion> regions, Lanes* total_basis,
                               RegionLanes<P>& out) {
   static_assert(sizeof(Frame) == sizeof(Lanes));
-  constexpr std::size_t rows = padded_to_lanes(static_cast<std::size_t>(out.twice));
+  constexpr std::size_t rows = padded_to_lanes(static_cast<std::size_t>(RegionLanes<P>::twice));
   alignas(64) double keep[lanes] = {};
 #pragma GCC unroll 4
   for (std::size_t m = 0; m < rows; m += lanes) {
@@ -369,7 +369,7 @@ HWY_INLINE void multiply(const S* moments, const Lanes* f, Lanes* sums) {
 template <int P>
 void add_regions(const RegionLanes<P>& place, std::span<const BatchRegion> regions, double base,
                  double* product, double* mass) {
-  constexpr auto size = static_cast<std::size_t>(place.size);
+  constexpr auto size = static_cast<std::size_t>(RegionLanes<P>::size);
   constexpr std::size_t donor_rows = padded_to_lanes(size);
   Lanes f[donor_rows];
 #pragma GCC unroll 2
@@ -407,7 +407,7 @@ void add_regions(const RegionLanes<P>& place, std::span<const BatchRegion> regio
 template <int P>
 void add_components(const RegionLanes<P>& place, std::span<const BatchRegion> regions,
                     std::size_t components, const double* base, double* product, double* mass) {
-  constexpr auto size = static_cast<std::size_t>(place.size);
+  constexpr auto size = static_cast<std::size_t>(RegionLanes<P>::size);
   std::array<RegionNumbers<P>, lanes> numbers;
   for (std::size_t l = 0; l < regions.size(); ++l) {
     const auto lane = [&](const Lanes& x) { return x[l]; };

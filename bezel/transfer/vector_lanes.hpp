@@ -180,14 +180,22 @@ HWY_INLINE double mul_add(double a, double b, double c) {
 HWY_INLINE Lanes mul_add(const Lanes& a, const Lanes& b, const Lanes& c) {
 #if HWY_NATIVE_FMA
   namespace hn = hwy::HWY_NAMESPACE;
-  const hn::CappedTag<double, lanes> d;
-  alignas(64) double x[lanes], y[lanes], z[lanes];
-  store(a, x);
-  store(b, y);
-  store(c, z);
-  for (std::size_t i = 0; i < lanes; i += hn::Lanes(d))
-    hn::StoreU(hn::MulAdd(hn::LoadU(d, x + i), hn::LoadU(d, y + i), hn::LoadU(d, z + i)), d, z + i);
-  return load(z);
+#if HWY_TARGET <= HWY_AVX3
+  using Part = Lanes;
+#else
+  using Part = Lanes::Part;
+#endif
+  const hn::CappedTag<double, sizeof(Part) / sizeof(double)> d;
+  const auto* x = reinterpret_cast<const double*>(&a);
+  const auto* y = reinterpret_cast<const double*>(&b);
+  const auto* z = reinterpret_cast<const double*>(&c);
+  Lanes r;
+  auto* to = reinterpret_cast<double*>(&r);
+#pragma GCC unroll 4
+  for (std::size_t i = 0; i < lanes; i += sizeof(Part) / sizeof(double))
+    hn::StoreU(hn::MulAdd(hn::LoadU(d, x + i), hn::LoadU(d, y + i), hn::LoadU(d, z + i)), d,
+               to + i);
+  return r;
 #else
   return a * b + c;
 #endif
