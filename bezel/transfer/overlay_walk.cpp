@@ -38,7 +38,8 @@ bool ElementOverlay::walk_edge(std::int32_t edge, Record& record) {
   const auto& ends = target_.edge_vertex[static_cast<std::size_t>(edge)];
   const std::int32_t first = donor_at_vertex(ends[0]), last = donor_at_vertex(ends[1]);
   if (first == exterior || last == exterior) return false;
-  const CurveCache& curve = target_.edge_cache[static_cast<std::size_t>(edge)];
+  CurveCache room, other_room;
+  const CurveCache& curve = target_.edge_cache(edge, room);
   const auto begin = contacts_.size();
   const auto give_up = [&] {
     contacts_.resize(begin);
@@ -53,7 +54,7 @@ bool ElementOverlay::walk_edge(std::int32_t edge, Record& record) {
       std::uint32_t& stamp = walk_stamp_[side.edge.index()];
       if (stamp == walk_now_) continue;
       stamp = walk_now_;
-      const CurveCache& other = donor_.edge_cache[side.edge.index()];
+      const CurveCache& other = donor_.edge_cache(side.edge.value, other_room);
       const double distance = coincidence_distance(curve, other);
       if (curve.box.lo[0] > other.box.hi[0] + distance ||
           other.box.lo[0] > curve.box.hi[0] + distance ||
