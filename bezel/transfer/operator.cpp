@@ -110,11 +110,12 @@ TransferOperator::TransferOperator(std::shared_ptr<const Space> donor,
   m.zero_uncovered = options.uncovered == Uncovered::zero;
   m.target_area = to.element_area;
   const auto columns = static_cast<std::size_t>(group.components);
-  for (const std::int32_t d : swept.outside) {
-    const std::size_t begin = static_cast<std::size_t>(d) * columns;
+  for (std::size_t i = 0; i < swept.outside.size(); ++i) {
+    const std::int32_t d = swept.outside[i];
+    const std::size_t begin = static_cast<std::size_t>(d) * columns, place = i * columns;
     std::vector<double> rest(size_on(*m.donor, d));
     for (std::size_t c = 0; c < rest.size(); ++c)
-      rest[c] = group.donor_mass[begin + c] - swept.given_mass[begin + c];
+      rest[c] = group.donor_mass[begin + c] - swept.given_mass[place + c];
     m.outside.push_back(d);
     m.lost.push_back(std::move(rest));
   }
@@ -308,7 +309,14 @@ TransferResult TransferOperator::transfer(std::span<const Field> donors, const B
       applied.field = detail::with_coefficients(applied.field, limited);
     }
     result.fields.push_back(std::move(applied.field));
-    const auto lines = reports.add(k, f, result.fields.back(), outside, made, {}, defect);
+    reports.add({&k, 1}, {std::array{&f},
+                          std::array{&std::as_const(result.fields.back())},
+                          outside,
+                          made,
+                          {},
+                          defect,
+                          {}});
+    const auto lines = reports.lines(k);
     for (std::size_t c = 0; c < limited.size(); ++c) {
       lines[c].min_after = limited[c].range.lo;
       lines[c].max_after = limited[c].range.hi;

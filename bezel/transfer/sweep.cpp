@@ -82,6 +82,25 @@ std::string uncovered_message(const std::vector<std::pair<ElementId, double>>& e
          "as 0";
 }
 
+/// What pairs took of some donor elements, [element][component].
+std::vector<double> given_masses(std::span<const ChunkResult> chunks, std::size_t donors,
+                                 std::size_t components, std::span<const std::int32_t> some) {
+  std::vector<double> mass(some.size() * components, 0.0);
+  std::vector<std::int32_t> place(donors, -1);
+  for (std::size_t i = 0; i < some.size(); ++i)
+    place[static_cast<std::size_t>(some[i])] = static_cast<std::int32_t>(i);
+  for (const ChunkResult& r : chunks) {
+    for (std::size_t i = 0; i < r.given.donor.size(); ++i) {
+      const std::int32_t at = place[static_cast<std::size_t>(r.given.donor[i])];
+      if (at < 0) continue;
+      double* to = mass.data() + static_cast<std::size_t>(at) * components;
+      const double* from = r.given.mass.data() + i * components;
+      for (std::size_t c = 0; c < components; ++c) to[c] += from[c];
+    }
+  }
+  return mass;
+}
+
 }  // namespace
 
 std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayMesh& target,
@@ -153,21 +172,13 @@ Swept balance(std::span<const ChunkResult> chunks, std::span<const double> donor
               std::size_t components, Uncovered policy) {
   Swept swept;
   TransferReport& report = swept.report;
-  std::vector<double>& given_area = swept.given_area;
-  std::vector<double>& given_mass = swept.given_mass;
-  given_area.assign(donor_area.size(), 0.0);
-  given_mass.assign(donor_area.size() * components, 0.0);
+  std::vector<double> given_area(donor_area.size(), 0.0);
   swept.made.assign(components, 0.0);
   std::int32_t inconsistent = -1;
   std::int64_t inconsistent_count = 0;
   for (const ChunkResult& r : chunks) {
-    for (std::size_t i = 0; i < r.given.donor.size(); ++i) {
-      const auto d = static_cast<std::size_t>(r.given.donor[i]);
-      given_area[d] += r.given.area[i];
-      for (std::size_t c = 0; c < components; ++c) {
-        given_mass[d * components + c] += r.given.mass[i * components + c];
-      }
-    }
+    for (std::size_t i = 0; i < r.given.donor.size(); ++i)
+      given_area[static_cast<std::size_t>(r.given.donor[i])] += r.given.area[i];
     for (std::size_t c = 0; c < components; ++c) swept.made[c] += r.made[c];
     report.pairs += r.counts.pairs;
     report.crossings += r.counts.crossings;
@@ -208,6 +219,7 @@ Swept balance(std::span<const ChunkResult> chunks, std::span<const double> donor
     report.outside_area += rest;
     swept.outside.push_back(static_cast<std::int32_t>(d));
   }
+  swept.given_mass = given_masses(chunks, donor_area.size(), components, swept.outside);
   return swept;
 }
 

@@ -55,10 +55,10 @@ std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayM
 
 /// What a pass found.
 struct Swept {
-  TransferReport report;                       ///< all but the fields and the total time
-  std::vector<double> given_area, given_mass;  ///< per donor element (and component): in pairs
-  std::vector<double> made;                    ///< per component
+  TransferReport report;              ///< all but the fields and the total time
+  std::vector<double> made;           ///< per component
   std::vector<std::int32_t> outside;  ///< donor elements that lie partly outside the target
+  std::vector<double> given_mass;     ///< what pairs took of them, [outside][component]
   double max_mass_defect = 0;
 };
 
