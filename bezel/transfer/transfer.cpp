@@ -149,8 +149,10 @@ TransferResult detail::transfer_by(const Sweeper& sweeper, std::span<const Field
   const detail::OverlayMesh target(target_mesh, "target", options.threads);
   Plan plan = make_plan(donors, target_mesh, donor, target, options);
   const detail::FrontSearch search(donor);
+  const double prepared = seconds_since(start);
   std::vector<detail::ChunkResult> chunks =
       sweeper(donor, target, search, plan.groups, options, progress);
+  const auto swept_at = clock::now();
   detail::Swept swept = detail::balance(chunks, donor.element_area,
                                         detail::component_count(plan.groups), options.uncovered);
   const std::size_t components = swept.made.size();
@@ -192,6 +194,7 @@ TransferResult detail::transfer_by(const Sweeper& sweeper, std::span<const Field
   if (options.bounds.kind != Bounds::Kind::none)
     bounds.emplace(donor.element_area, target.element_area, chunks, report, options);
   std::vector<detail::ContinuousOutcome> continuous;
+  double solve_seconds = 0.0;
   if (options.continuity == Continuity::continuous) {
     detail::BoundsOf limits;
     if (bounds) {
@@ -206,7 +209,8 @@ TransferResult detail::transfer_by(const Sweeper& sweeper, std::span<const Field
     }
     const auto solve_start = clock::now();
     continuous = detail::make_continuous(plan.groups, donor, target, search, options, limits);
-    report.seconds.solve += seconds_since(solve_start);
+    solve_seconds = seconds_since(solve_start);
+    report.seconds.solve += solve_seconds;
   }
 
   // What is not needed any more makes room.
@@ -288,6 +292,8 @@ TransferResult detail::transfer_by(const Sweeper& sweeper, std::span<const Field
   }
   report.fields = reports.finish();
   for (std::optional<Field>& field : fields) transferred.fields.push_back(std::move(*field));
+  report.seconds.prepare = prepared;
+  report.seconds.report = seconds_since(swept_at) - solve_seconds;
   report.seconds.total = seconds_since(start);
   return transferred;
 }
