@@ -53,18 +53,18 @@ void scale_columns(std::span<const Column> columns, std::size_t begin,
   }
 }
 
-/// Each of nc rows of `fixed` (0: of `size`) numbers times the matrix.
+/// Each of nc rows of `fixed` (0: of `size`) numbers times the matrix, as columns.
 template <std::size_t fixed>
 void multiply_rows(std::size_t size, std::size_t nc, const double* matrix, const double* from,
                    double* to) {
   constexpr std::size_t room =
       fixed > 0 ? fixed : static_cast<std::size_t>(bernstein::triangle_size(max_moment_degree));
   const std::size_t n = fixed > 0 ? fixed : size;
-  for (std::size_t c = 0; c < nc; ++c, from += n, to += n) {
+  for (std::size_t c = 0; c < nc; ++c, from += n) {
     std::array<double, room> sum{};
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t m = 0; m < n; ++m) sum[m] += from[i] * matrix[i * n + m];
-    std::copy_n(sum.data(), n, to);
+    for (std::size_t m = 0; m < n; ++m) to[m * nc + c] = sum[m];
   }
 }
 
@@ -127,8 +127,8 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
 void Group::make_powers(std::size_t elements, int threads) {
   const auto nc = static_cast<std::size_t>(components);
   if (donor_mapped || target_mapped) return;
-  powers.resize(scaled.size() + donor_padding);
-  std::fill(powers.end() - donor_padding, powers.end(), 0.0);
+  powers.resize(scaled.size() + batch_padding);
+  std::fill(powers.end() - batch_padding, powers.end(), 0.0);
   for_blocks(elements, threads, [&](std::size_t e) {
     const int degree = donor_space->degree(ElementId(e));
     if (degree > max_moment_degree) return;

@@ -107,6 +107,7 @@ void write_chunk(const ChunkResult& chunk, const OverlayMesh& donor, const Overl
   numbers(donor, chunk.given.donor);
   numbers(target, chunk.given.target);
   out.list(chunk.given.area);
+  out.list(chunk.given.massed);
   out.list(chunk.given.mass);
   out.value(chunk.counts);
   out.list(chunk.made);
@@ -132,6 +133,7 @@ ChunkResult read_chunk(MessageReader& in) {
   chunk.given.donor = in.list<std::int32_t>();
   chunk.given.target = in.list<std::int32_t>();
   chunk.given.area = in.list<double>();
+  chunk.given.massed = in.list<std::int32_t>();
   chunk.given.mass = in.list<double>();
   chunk.counts = in.value<OverlayCounts>();
   chunk.made = in.list<double>();
