@@ -56,12 +56,12 @@ void OverlayMesh::lay_out_edges(const std::string& what, int threads) {
     }
     edge_sides[e] = sides;
   };
-  parallel_for(
-      (edges + block - 1) / block,
-      [&](std::size_t b) {
-        for (std::size_t e = b * block; e < std::min(edges, (b + 1) * block); ++e) lay_out(e);
-      },
-      threads);
+  parallel_for((edges + block - 1) / block,
+               [&](std::size_t b) {
+                 for (std::size_t e = b * block; e < std::min(edges, (b + 1) * block); ++e)
+                   lay_out(e);
+               },
+               threads);
 }
 
 void OverlayMesh::lay_out_elements(const std::string& what, int threads) {
@@ -91,12 +91,12 @@ void OverlayMesh::lay_out_elements(const std::string& what, int threads) {
     }
     element_area[e] = degree == 1 ? 0.5 * validity.det : area(degree, control);
   };
-  parallel_for(
-      (elements + block - 1) / block,
-      [&](std::size_t b) {
-        for (std::size_t e = b * block; e < std::min(elements, (b + 1) * block); ++e) lay_out(e);
-      },
-      threads);
+  parallel_for((elements + block - 1) / block,
+               [&](std::size_t b) {
+                 for (std::size_t e = b * block; e < std::min(elements, (b + 1) * block); ++e)
+                   lay_out(e);
+               },
+               threads);
   for (const Box2& b : element_box) box.include(b);
 }
 
