@@ -129,6 +129,8 @@ Json to_json(const TransferCommand& options, const TransferReport& r) {
               {"max_joint_gap", r.max_joint_gap},
               {"seconds",
                {{"total", r.seconds.total},
+                {"prepare", r.seconds.prepare},
+                {"report", r.seconds.report},
                 {"overlay", r.seconds.overlay},
                 {"integrate", r.seconds.integrate},
                 {"solve", r.seconds.solve}}}};

@@ -85,6 +85,32 @@ class RuleTable {
   std::array<TriangleRule, static_cast<std::size_t>(Space::max_degree) + 1> rule_;
 };
 
+/// Which degrees a space's elements have, ascending.
+std::vector<int> degrees_of(const Space& space);
+
+/// The corners of a straight triangle.
+inline std::array<Vec2, 3> corners(const TriangleMesh& mesh, ElementId e) {
+  const auto n = mesh.nodes(e);
+  return {mesh.control(n[0]), mesh.control(n[1]), mesh.control(n[2])};
+}
+
+/// Barycentrics 1 and 2 of points of the plane, in place.
+inline void to_frame(const Frame& frame, std::span<double> x, std::span<double> y) {
+  for (std::size_t q = 0; q < x.size(); ++q) {
+    const double rx = x[q] - frame.centre.x(), ry = y[q] - frame.centre.y();
+    x[q] = 1.0 / 3.0 + (frame.gradient[1].x() * rx + frame.gradient[1].y() * ry);
+    y[q] = 1.0 / 3.0 + (frame.gradient[2].x() * rx + frame.gradient[2].y() * ry);
+  }
+}
+
+/// Calls body(from, to) for chunks of n elements; small enough that every thread gets some.
+inline void for_chunks(std::size_t n, int threads,
+                       const std::function<void(std::size_t, std::size_t)>& body) {
+  constexpr std::size_t chunk = 512;
+  parallel_for((n + chunk - 1) / chunk,
+               [&](std::size_t c) { body(c * chunk, std::min(n, (c + 1) * chunk)); }, threads);
+}
+
 /// Calls body(element) for all elements, 32 to a task.
 inline void for_elements(const TriangleMesh& mesh, const std::function<void(ElementId)>& body,
                          int threads = 0) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "bezel/field/field.hpp"
@@ -21,7 +22,7 @@ bernstein::Range element_range(const Field& field, ElementId e, int component, d
 class ValueRanges {
  public:
   /// @throws InputError when the mesh has no elements
-  explicit ValueRanges(std::shared_ptr<const Space> space);
+  explicit ValueRanges(std::shared_ptr<const Space> space, int threads = 0);
 
   /// As value_range(). May be called from several threads at once.
   /// @param field  on the space given, or one with the same elements, degrees and frames
@@ -41,7 +42,16 @@ class ValueRanges {
     double tol;       // wanted
     double roundoff;  // not worth looking for
   };
-  double largest(const Search& search, std::vector<Candidate> candidates) const;
+  bernstein::Range in_reference(const Field& field, int component, double rel_tol) const;
+  /// @param slack      up to which bounds say nothing
+  /// @param attained   values that occur
+  /// @param all        the ends of the bounds
+  /// @param low, high  upper bounds of -f and f by element
+  bernstein::Range search_both(const Field& field, int component, double rel_tol, double slack,
+                               const bernstein::Range& attained, const bernstein::Range& all,
+                               std::span<const double> low, std::span<const double> high) const;
+  double largest(const Search& search, double known, std::span<const double> bounds) const;
+  /// The largest value at the corners of an element (physical basis).
   double attained(const Search& search, std::size_t e) const;
   double sharp(const Search& search, const Candidate& candidate, double known) const;
 

@@ -7,6 +7,7 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/field/element_kernel.hpp"
+#include "bezel/numeric/finite.hpp"
 
 namespace bezel {
 namespace {
@@ -47,6 +48,7 @@ Field::Field(std::string name, std::shared_ptr<const Space> space, std::vector<d
         fmt::format("field '{}' has {} values, expected {} (coefficients {} x components {})",
                     name_, coefficients_.size(), space_->coefficient_count() * n,
                     space_->coefficient_count(), components_));
+  if (all_finite(coefficients_)) return;
   for (std::size_t i = 0; i < coefficients_.size(); ++i) {
     if (std::isfinite(coefficients_[i])) continue;
     // The element that owns it: the last whose offset is not above i / n.

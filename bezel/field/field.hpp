@@ -88,8 +88,8 @@ Field project(std::string name, std::shared_ptr<const Space> space,
 /// integrals.
 std::vector<double> integral(const Field& field, int threads = 0);
 /// Integral of |f| of each component: exact up to rounding on elements whose coefficients have one
-/// sign, elsewhere by quadrature on 16 pieces of the element (relative error about 1e-3 of such an
-/// element's share).
+/// sign and where f is linear on a straight triangle, elsewhere by quadrature on 16 pieces of the
+/// element (relative error about 1e-3 of such an element's share).
 std::vector<double> integral_abs(const Field& field, int threads = 0);
 /// Integral of each component over each element, shape (elements, components), exact up to
 /// rounding.

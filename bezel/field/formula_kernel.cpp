@@ -25,7 +25,7 @@ void check_formula(const Formula& formula) {
 }
 
 void evaluate_formula(const Formula& formula, std::span<const Vec2> points, std::span<double> out,
-                      ElementId e) {
+                      ElementId e, std::size_t each) {
   std::vector<double> xy(2 * points.size());
   const std::span<double> x(xy.data(), points.size()), y(xy.data() + points.size(), points.size());
   for (std::size_t q = 0; q < points.size(); ++q) {
@@ -36,9 +36,10 @@ void evaluate_formula(const Formula& formula, std::span<const Vec2> points, std:
   formula.evaluate(columns, out);
   for (std::size_t q = 0; q < points.size(); ++q)
     if (!std::isfinite(out[q]))
-      throw InputError({{}, 0, "triangle", e.value},
-                       fmt::format("formula '{}' is {} at x = {}, y = {}, expected a finite value",
-                                   formula.text(), without_sign(out[q]), x[q], y[q]));
+      throw InputError(
+          {{}, 0, "triangle", e.value + static_cast<std::int64_t>(each > 0 ? q / each : 0)},
+          fmt::format("formula '{}' is {} at x = {}, y = {}, expected a finite value",
+                      formula.text(), without_sign(out[q]), x[q], y[q]));
 }
 
 Vec2 formula_gradient(const Formula& formula, const Vec2& point, ElementId e) {

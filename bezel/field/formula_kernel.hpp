@@ -13,8 +13,10 @@ namespace bezel::field_detail {
 void check_formula(const Formula& formula);
 /// out[q] = formula(x, y) at points[q]. @throws InputError naming the triangle and point where it
 /// is not finite
+/// @param e     the triangle; with `each`, the one of the first points, every next triangle having
+///              as many
 void evaluate_formula(const Formula& formula, std::span<const Vec2> points, std::span<double> out,
-                      ElementId e);
+                      ElementId e, std::size_t each = 0);
 
 /// (d/dx, d/dy) of the formula. @throws InputError naming the triangle and point where it is not
 /// finite

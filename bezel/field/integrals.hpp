@@ -1,6 +1,7 @@
 #pragma once
 // Internal: integrals of many fields of one space; what depends on the elements only is done once.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -41,28 +42,46 @@ struct MapRule {
 /// @cost     one quadrature per element
 std::vector<double> basis_integrals(const Space& space, int threads = 0);
 
-/// element_integrals() from those of the basis functions.
-std::vector<double> element_integrals(const Field& field, std::span<const double> basis_integrals,
-                                      int threads = 0);
+/// Whether a straight triangle is its own frame, up to the rounding of barycentric coordinates at
+/// its place in the plane.
+bool is_own_frame(const Frame& frame, const std::array<Vec2, 3>& corners);
 
-/// integral() from element_integrals().
-std::vector<double> integral(const Field& field, std::span<const double> element_integrals);
+/// How many components some fields have together. Below, those of several fields of one space are
+/// numbered one field after the other.
+std::size_t component_count(std::span<const Field* const> fields);
 
-/// integral_abs() from element_integrals(), of several fields of one space.
+/// element_integrals() of fields of one space from those of the basis functions, shape (elements,
+/// all components).
+std::vector<double> element_integrals(std::span<const Field* const> fields,
+                                      std::span<const double> basis_integrals, int threads = 0);
+
+/// integral() of each component, from the integrals over elements, shape (elements, components).
+std::vector<double> integral(std::span<const double> element_integrals, std::size_t components);
+
+/// integral_abs() of fields of one space, from their integrals over elements.
 class AbsIntegral {
  public:
-  explicit AbsIntegral(std::shared_ptr<const Space> space);
-  /// @param element_integrals  of a field of that space
-  std::vector<double> operator()(const Field& field, std::span<const double> element_integrals,
-                                 int threads = 0) const;
+  explicit AbsIntegral(std::shared_ptr<const Space> space, int threads = 0);
+  /// @param element_integrals  of the fields, shape (elements, all components)
+  std::vector<double> operator()(std::span<const Field* const> fields,
+                                 std::span<const double> element_integrals, int threads = 0) const;
 
  private:
-  double on_element(const Field& field, ElementId e, std::size_t component, double integral,
+  double on_element(std::size_t e, const double* c, std::size_t stride, double integral,
                     std::span<double> scratch) const;
+  template <std::size_t fixed>
+  void on_elements(const Field& field, std::size_t from, std::size_t to, const double* integrals,
+                   double* out, std::size_t stride, std::span<double> scratch) const;
+
+  /// Whether coefficients of one sign say that of f (not where an element reaches out of a frame
+  /// given by the caller), and whether f is a polynomial in a straight triangle's own coordinates.
+  enum class Shape : std::uint8_t { beyond_frame, inside_frame, straight };
+  Shape shape(std::size_t e) const { return shape_.empty() ? plain_ : shape_[e]; }
 
   std::shared_ptr<const Space> space_;
-  std::vector<MapRule> pieces_;     // the rule on all pieces of an element, by degree
-  std::vector<std::uint8_t> fits_;  // physical: the element lies in its frame, by element
+  std::vector<MapRule> pieces_;  // the rule on all pieces of an element, by degree
+  Shape plain_;                  // of all elements in reference coordinates
+  std::vector<Shape> shape_;     // in a physical basis, by element
 };
 
 }  // namespace bezel::field_detail

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -49,16 +50,16 @@ double ratio(double a, double b) {
 
 std::vector<double> element_integrals(const Field& field, int threads) {
   return field_detail::element_integrals(
-      field, field_detail::basis_integrals(field.space(), threads), threads);
+      std::array{&field}, field_detail::basis_integrals(field.space(), threads), threads);
 }
 
 std::vector<double> integral(const Field& field, int threads) {
-  return field_detail::integral(field, element_integrals(field, threads));
+  return field_detail::integral(element_integrals(field, threads), at(field.components()));
 }
 
 std::vector<double> integral_abs(const Field& field, int threads) {
-  return field_detail::AbsIntegral(field.space_ptr())(field, element_integrals(field, threads),
-                                                      threads);
+  return field_detail::AbsIntegral(field.space_ptr(), threads)(
+      std::array{&field}, element_integrals(field, threads), threads);
 }
 
 double l2_norm(const Field& field, int threads) {

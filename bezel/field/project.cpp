@@ -5,13 +5,16 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "bezel/base/error.hpp"
 #include "bezel/field/element_kernel.hpp"
 #include "bezel/field/field.hpp"
 #include "bezel/field/formula_kernel.hpp"
+#include "bezel/field/integrals.hpp"
 #include "bezel/field/mass_kernel.hpp"
 
 namespace bezel {
@@ -146,15 +149,18 @@ bool still_shrinking(double now, double before, double solution) {
   return now > 0x1p-53 * solution && now < 0.25 * before;
 }
 
+[[noreturn]] void refuse(ElementId e) {
+  throw InputError(triangle(e),
+                   "its mass matrix is not positive definite, expected an element that is not "
+                   "inverted or flat");
+}
+
 /// The projection on one element, by Cholesky and corrections.
 MatrixXd project_element(const Space& space, ElementId e, const TriangleRule& rule,
                          std::span<const Formula> components) {
   const Samples s = take_samples(space, e, rule, components);
   const Eigen::LLT<MatrixXd> llt(mass_matrix(s));
-  if (llt.info() != Eigen::Success)
-    throw InputError(triangle(e),
-                     "its mass matrix is not positive definite, expected an element that is not "
-                     "inverted or flat");
+  if (llt.info() != Eigen::Success) refuse(e);
   MatrixXd c = llt.solve(load(s, s.values));
   double before = c.norm();
   for (int round = 0; round < max_corrections; ++round) {
@@ -164,6 +170,91 @@ MatrixXd project_element(const Space& space, ElementId e, const TriangleRule& ru
     before = correction.norm();
   }
   return c;
+}
+
+/// The same for straight elements in their own coordinates, many at once: one matrix for all of
+/// them, their areas cancel.
+class StraightProjection {
+ public:
+  StraightProjection(int degree, const TriangleRule& rule)
+      : rule_(rule),
+        basis_(index(static_cast<std::size_t>(bernstein::triangle_size(degree))),
+               index(rule.weight.size())) {
+    for (std::size_t q = 0; q < rule.weight.size(); ++q)
+      bernstein::basis(degree, rule.lambda[q],
+                       {basis_.col(index(q)).data(), static_cast<std::size_t>(basis_.rows())});
+    const Eigen::Map<const Eigen::VectorXd> weight(rule.weight.data(), index(rule.weight.size()));
+    const MatrixXd weighted = basis_ * weight.asDiagonal();
+    projector_ = Eigen::LLT<MatrixXd>(weighted * basis_.transpose()).solve(weighted);
+  }
+
+  /// Elements [from, to) of one degree.
+  void operator()(const Space& space, std::size_t from, std::size_t to,
+                  std::span<const Formula> components, std::vector<double>& out) const {
+    const std::size_t points = rule_.weight.size(), n = components.size();
+    std::vector<Vec2> x;
+    x.reserve((to - from) * points);
+    for (std::size_t e = from; e < to; ++e) {
+      const std::array<Vec2, 3> c = field_detail::corners(*space.mesh(), ElementId(e));
+      if (!(cross(c[1] - c[0], c[2] - c[0]) > 0.0)) refuse(ElementId(e));
+      for (const Lambda& l : rule_.lambda) x.push_back(l[0] * c[0] + l[1] * c[1] + l[2] * c[2]);
+    }
+    MatrixXd values(index(points), index(to - from));
+    for (std::size_t k = 0; k < n; ++k) {
+      field_detail::evaluate_formula(components[k], x, {values.data(), x.size()}, ElementId(from),
+                                     points);
+      MatrixXd c = projector_ * values;
+      double before = c.norm();
+      for (int round = 0; round < max_corrections; ++round) {
+        const MatrixXd correction = projector_ * (values - basis_.transpose() * c);
+        c += correction;
+        if (!still_shrinking(correction.norm(), before, c.norm())) break;
+        before = correction.norm();
+      }
+      double* to_coefficient = out.data() + space.offset(ElementId(from)) * n + k;
+      for (Eigen::Index i = 0; i < c.size(); ++i)
+        to_coefficient[static_cast<std::size_t>(i) * n] = c.data()[i];
+    }
+  }
+
+ private:
+  const TriangleRule& rule_;
+  MatrixXd basis_, projector_;  // (size, points)
+};
+
+/// Whether elements [from, to) are straight and their polynomials in their own coordinates.
+bool are_straight(const Space& space, std::size_t from, std::size_t to) {
+  if (space.mesh()->degree() > 1 || space.uniform_degree() < 0) return false;
+  if (space.basis() == Basis::reference) return true;
+  for (std::size_t e = from; e < to; ++e) {
+    const ElementId id(e);
+    if (!field_detail::is_own_frame(space.frame(id), field_detail::corners(*space.mesh(), id)))
+      return false;
+  }
+  return true;
+}
+
+std::vector<double> project_discontinuous(const Space& space, const field_detail::RuleTable& rules,
+                                          std::span<const Formula> components, int threads) {
+  std::vector<double> out(space.coefficient_count() * components.size());
+  std::optional<StraightProjection> straight;
+  if (are_straight(space, 0, 0))
+    straight.emplace(space.uniform_degree(), rules(space.uniform_degree()));
+  constexpr std::size_t chunk = 32;
+  const std::size_t elements = space.mesh()->element_count();
+  parallel_for((elements + chunk - 1) / chunk,
+               [&](std::size_t task) {
+                 const std::size_t from = task * chunk, to = std::min(elements, from + chunk);
+                 if (straight && are_straight(space, from, to))
+                   return (*straight)(space, from, to, components, out);
+                 for (std::size_t e = from; e < to; ++e) {
+                   const ElementId id(e);
+                   store(space, id, project_element(space, id, rules(space.degree(id)), components),
+                         out);
+                 }
+               },
+               threads);
+  return out;
 }
 
 /// Adds element contributions (size, components) to rows of the right-hand side, in element order.
@@ -261,13 +352,7 @@ Field project(std::string name, std::shared_ptr<const Space> space,
   if (space->continuity() == Continuity::continuous) {
     c = project_continuous(*space, rules, components, threads);
   } else {
-    c.resize(space->coefficient_count() * n);
-    field_detail::for_elements(
-        *space->mesh(),
-        [&](ElementId e) {
-          store(*space, e, project_element(*space, e, rules(space->degree(e)), components), c);
-        },
-        threads);
+    c = project_discontinuous(*space, rules, components, threads);
   }
   return Field(std::move(name), std::move(space), std::move(c), static_cast<int>(n));
 }

@@ -1,5 +1,3 @@
-#include <set>
-
 #include "bezel/field/element_kernel.hpp"
 
 namespace bezel::field_detail {
@@ -29,14 +27,20 @@ TriangleRule rule_of_degree(int degree) {
   return degree <= largest_table_degree ? triangle_rule(degree) : collapsed_rule(degree);
 }
 
+std::vector<int> degrees_of(const Space& space) {
+  if (space.uniform_degree() >= 0) return {space.uniform_degree()};
+  std::array<bool, static_cast<std::size_t>(Space::max_degree) + 1> used{};
+  for (std::size_t e = 0; e < space.mesh()->element_count(); ++e)
+    used[static_cast<std::size_t>(space.degree(ElementId(e)))] = true;
+  std::vector<int> degrees;
+  for (int p = 0; p <= Space::max_degree; ++p)
+    if (used[static_cast<std::size_t>(p)]) degrees.push_back(p);
+  return degrees;
+}
+
 RuleTable::RuleTable(const Space& space, const std::function<int(int)>& degree_of) {
-  std::set<int> degrees;
-  if (space.uniform_degree() >= 0)
-    degrees.insert(space.uniform_degree());
-  else
-    for (std::size_t e = 0; e < space.mesh()->element_count(); ++e)
-      degrees.insert(space.degree(ElementId(e)));
-  for (const int p : degrees) rule_[static_cast<std::size_t>(p)] = rule_of_degree(degree_of(p));
+  for (const int p : degrees_of(space))
+    rule_[static_cast<std::size_t>(p)] = rule_of_degree(degree_of(p));
 }
 
 }  // namespace bezel::field_detail

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "bezel/base/error.hpp"
-#include "bezel/base/parallel.hpp"
 #include "bezel/bernstein/ceiling.hpp"
+#include "bezel/bernstein/fixed_size.hpp"
 #include "bezel/field/element_kernel.hpp"
 #include "bezel/field/element_range.hpp"
 #include "bezel/field/piece_bounds.hpp"
@@ -24,10 +24,15 @@ constexpr double u = 0x1p-53;
 constexpr double far_outside = 1e-3;
 /// Corners this near to those of the frame are the same up to rounding.
 constexpr double same_corner = 1e-12;
-constexpr std::size_t block = 1024;
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
+}
+
+double power(double x, int d) {
+  double product = 1.0;
+  for (int i = 0; i < d; ++i) product *= x;
+  return product;
 }
 
 void check_tolerance(double rel_tol) {
@@ -56,15 +61,16 @@ Range coefficient_range(const Field& field, int component) {
 
 }  // namespace
 
-ValueRanges::ValueRanges(std::shared_ptr<const Space> space) : space_(std::move(space)) {
+ValueRanges::ValueRanges(std::shared_ptr<const Space> space, int threads)
+    : space_(std::move(space)) {
   const TriangleMesh& mesh = *space_->mesh();
   const std::size_t elements = mesh.element_count();
   if (elements == 0) throw InputError("a mesh without elements has no range of values");
   if (space_->basis() == Basis::reference) return;
   widening_.resize(elements);
   exact_.resize(elements);
-  parallel_for((elements + block - 1) / block, [&](std::size_t b) {
-    for (std::size_t e = b * block; e < std::min(elements, (b + 1) * block); ++e) {
+  field_detail::for_chunks(elements, threads, [&](std::size_t from, std::size_t to) {
+    for (std::size_t e = from; e < to; ++e) {
       const ElementId id(e);
       const Frame& frame = space_->frame(id);
       const auto nodes = mesh.nodes(id);
@@ -80,30 +86,21 @@ ValueRanges::ValueRanges(std::shared_ptr<const Space> space) : space_(std::move(
       // parts in halves. 8u: the rounding of lambda at the points of an element.
       const double s = 8.0 * u - least;
       const int d = space_->degree(id);
-      widening_[e] = least < -far_outside ? -1.0 : 0.5 * (std::pow(1.0 + 6.0 * s, d) - 1.0);
+      widening_[e] = least < -far_outside ? -1.0 : 0.5 * (power(1.0 + 6.0 * s, d) - 1.0);
       exact_[e] = mesh.degree() == 1 && apart < same_corner ? 1 : 0;
     }
   });
 }
 
 double ValueRanges::attained(const Search& search, std::size_t e) const {
-  const Field& field = search.field;
   const ElementId id(e);
-  const std::span<const double> c = field.coefficients(id);
-  const std::size_t n = at(field.components()), k = at(search.component);
-  const int d = space_->degree(id), g = field.mesh().degree();
+  const int d = space_->degree(id), g = search.field.mesh().degree();
+  const std::vector<double> own = field_detail::component_of(search.field, id, search.component);
   double best = -std::numeric_limits<double>::infinity();
-  std::vector<double> own;
   for (int corner = 0; corner < 3; ++corner) {
-    double value = 0.0;
-    if (widening_.empty()) {
-      value = c[at(bernstein::triangle_corner(d, corner)) * n + k];
-    } else {
-      if (own.empty()) own = field_detail::component_of(field, id, search.component);
-      const NodeId node = field.mesh().nodes(id)[at(bernstein::triangle_corner(g, corner))];
-      value =
-          bernstein::evaluate<double>(d, own, space_->frame(id).lambda(field.mesh().control(node)));
-    }
+    const NodeId node = search.field.mesh().nodes(id)[at(bernstein::triangle_corner(g, corner))];
+    const double value = bernstein::evaluate<double>(
+        d, own, space_->frame(id).lambda(search.field.mesh().control(node)));
     best = std::max(best, search.sign * value);
   }
   return best;
@@ -128,20 +125,19 @@ double ValueRanges::sharp(const Search& search, const Candidate& candidate, doub
   return std::min(candidate.bound, search.sign > 0.0 ? range.hi : -range.lo);
 }
 
-double ValueRanges::largest(const Search& search, std::vector<Candidate> candidates) const {
-  const auto before = [](const Candidate& a, const Candidate& b) {
-    return a.bound != b.bound ? a.bound > b.bound : a.element < b.element;
-  };
-  const auto top = std::min_element(candidates.begin(), candidates.end(), before);
-  double known = attained(search, top->element);
-  const auto drop = [&] {
+double ValueRanges::largest(const Search& search, double known,
+                            std::span<const double> bounds) const {
+  std::vector<Candidate> candidates;
+  for (std::size_t e = 0; e < bounds.size(); ++e)
+    if (bounds[e] > known) candidates.push_back({e, bounds[e]});
+  if (!widening_.empty()) {
+    for (const Candidate& c : candidates)
+      if (c.bound > known) known = std::max(known, attained(search, c.element));
     std::erase_if(candidates, [&](const Candidate& c) { return c.bound <= known; });
-  };
-  drop();
-  for (const Candidate& c : candidates)
-    if (c.bound > known) known = std::max(known, attained(search, c.element));
-  drop();
-  std::sort(candidates.begin(), candidates.end(), before);
+  }
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return a.bound != b.bound ? a.bound > b.bound : a.element < b.element;
+  });
   for (const Candidate& c : candidates) {
     if (c.bound <= known) break;
     known = std::max(known, c.bound <= known + search.roundoff ? c.bound : sharp(search, c, known));
@@ -149,46 +145,94 @@ double ValueRanges::largest(const Search& search, std::vector<Candidate> candida
   return known;
 }
 
+Range ValueRanges::in_reference(const Field& field, int component, double rel_tol) const {
+  const std::size_t elements = field.mesh().element_count();
+  const std::size_t n = at(field.components());
+  const double* coefficients = field.coefficients().data() + component;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Range attained{infinity, -infinity}, all = attained;  // at corners; of the coefficients
+  const bool corners_tell = space_->highest_degree() <= 1;
+  std::vector<double> high(corners_tell ? 0 : elements), low(high.size());
+  const auto look = [&](auto fixed) {
+    const double* c = coefficients;
+    const std::size_t step = fixed() > 0 ? 1 : n;
+    for (std::size_t e = 0; e < elements; ++e) {
+      const int d = space_->degree(ElementId(e));
+      const std::size_t size = fixed() > 0 ? fixed() : at(bernstein::triangle_size(d));
+      const double first = c[0], second = c[at(d) * step], third = c[(size - 1) * step];
+      double lo = std::min(std::min(first, second), third);
+      double hi = std::max(std::max(first, second), third);
+      attained = {std::min(attained.lo, lo), std::max(attained.hi, hi)};
+      if (!corners_tell) {
+        for (std::size_t i = 1; i + 1 < size; ++i) {
+          lo = std::min(lo, c[i * step]);
+          hi = std::max(hi, c[i * step]);
+        }
+        all = {std::min(all.lo, lo), std::max(all.hi, hi)};
+        high[e] = hi;
+        low[e] = -lo;
+      }
+      c += size * step;
+    }
+  };
+  const int uniform = space_->uniform_degree();
+  bernstein::with_triangle_size(uniform >= 0 && n == 1 ? at(bernstein::triangle_size(uniform)) : 0,
+                                look);
+  return corners_tell ? attained
+                      : search_both(field, component, rel_tol, 0.0, attained, all, low, high);
+}
+
+Range ValueRanges::search_both(const Field& field, int component, double rel_tol, double slack,
+                               const Range& attained, const Range& all, std::span<const double> low,
+                               std::span<const double> high) const {
+  if (all.lo == all.hi) return all;
+  // Below the rounding of the values themselves (a constant field) there is nothing to find.
+  const double rounding = std::max(slack, 64.0 * u * std::max(std::abs(all.lo), std::abs(all.hi)));
+  const double tol = std::max(rel_tol * (all.hi - all.lo), rounding);
+  return {-largest({field, component, -1.0, tol, rounding}, -attained.lo, low),
+          largest({field, component, 1.0, tol, rounding}, attained.hi, high)};
+}
+
 Range ValueRanges::operator()(const Field& field, int component, double rel_tol) const {
   field_detail::check_component(field, component);
   check_tolerance(rel_tol);
   if (rel_tol == 0.0) return coefficient_range(field, component);
+  if (widening_.empty()) return in_reference(field, component, rel_tol);
   const std::size_t elements = field.mesh().element_count();
   const std::size_t n = at(field.components());
-  const std::span<const double> all = field.coefficients();
-  std::vector<Candidate> high(elements), low(elements);
-  double slack = 0.0, highest = -std::numeric_limits<double>::infinity(), lowest = highest;
+  const double* c = field.coefficients().data() + component;
+  std::vector<double> high(elements), low(elements);
+  double slack = 0.0;
+  std::size_t highest = 0, lowest = 0;
   for (std::size_t e = 0; e < elements; ++e) {
     const ElementId id(e);
     const auto size = at(bernstein::triangle_size(space_->degree(id)));
-    const double* c = all.data() + space_->offset(id) * n + at(component);
     double lo = *c, hi = *c;
     for (std::size_t i = 1; i < size; ++i) {
       lo = std::min(lo, c[i * n]);
       hi = std::max(hi, c[i * n]);
     }
-    if (!widening_.empty() && widening_[e] >= 0.0) {
+    if (widening_[e] >= 0.0) {
       const double wider = widening_[e] * (hi - lo);
       slack = std::max(slack, wider);
       lo -= wider;
       hi += wider;
-    } else if (!widening_.empty()) {
+    } else {
       const Known known = field_detail::piece_bounds(field, id, component)(field.mesh().gather(id));
       slack = std::max(slack, known.slack);
       lo = known.lo;
       hi = known.hi;
     }
-    high[e] = {e, hi};
-    low[e] = {e, -lo};
-    highest = std::max(highest, hi);
-    lowest = std::max(lowest, -lo);
+    high[e] = hi;
+    low[e] = -lo;
+    if (hi > high[highest]) highest = e;
+    if (-lo > low[lowest]) lowest = e;
+    c += size * n;
   }
-  if (highest == -lowest) return {-lowest, highest};
-  // Below the rounding of the values themselves (a constant field) there is nothing to find.
-  const double rounding = std::max(slack, 64.0 * u * std::max(std::abs(lowest), std::abs(highest)));
-  const double tol = std::max(rel_tol * (highest + lowest), rounding);
-  return {-largest({field, component, -1.0, tol, rounding}, std::move(low)),
-          largest({field, component, 1.0, tol, rounding}, std::move(high))};
+  const Range known{-attained({field, component, -1.0, 0.0, 0.0}, lowest),
+                    attained({field, component, 1.0, 0.0, 0.0}, highest)};
+  return search_both(field, component, rel_tol, slack, known, {-low[lowest], high[highest]}, low,
+                     high);
 }
 
 Range value_range(const Field& field, int component, double rel_tol) {

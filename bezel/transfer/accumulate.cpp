@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "bezel/bernstein/index.hpp"
-#include "bezel/numeric/binomial.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bezel/transfer/accumulate.cpp"
@@ -298,21 +297,6 @@ void basis_at(int degree, double u, double v, double* values) {
     }
     p2 *= v;
   }
-}
-
-std::span<const double> multinomials(int degree) {
-  static const auto tables = [] {
-    std::array<std::vector<double>, 11> all;
-    for (int d = 0; d <= 10; ++d) {
-      for (int k = 0; k <= d; ++k) {
-        for (int j = 0; j <= d - k; ++j) {
-          all[static_cast<std::size_t>(d)].push_back(binomial(d, k) * binomial(d - k, j));
-        }
-      }
-    }
-    return all;
-  }();
-  return tables[static_cast<std::size_t>(degree)];
 }
 
 }  // namespace bezel::detail

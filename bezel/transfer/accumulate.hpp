@@ -4,8 +4,9 @@
 #include <cstddef>
 #include <span>
 
+#include "bezel/bernstein/multinomial.hpp"
+#include "bezel/numeric/lanes.hpp"
 #include "bezel/numeric/vec.hpp"
-#include "bezel/transfer/lanes.hpp"
 
 namespace bezel::detail {
 
@@ -39,7 +40,6 @@ void evaluate_scaled(int degree, int components, const double* scaled, double u,
 /// Values of the Bernstein basis of degree 0..10 at barycentrics (1-u-v, u, v).
 void basis_at(int degree, double u, double v, double* values);
 
-/// d! / (i! j! k!) in index order.
-std::span<const double> multinomials(int degree);
+using bernstein::multinomials;
 
 }  // namespace bezel::detail

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bezel/base/parallel.hpp"
+#include "bezel/bernstein/fixed_size.hpp"
 #include "bezel/field/integrals.hpp"
 #include "bezel/transfer/accumulate.hpp"
 #include "bezel/transfer/moments.hpp"
@@ -14,19 +16,59 @@ namespace {
 /// Coefficients that differ by less than this fraction are equal up to rounding.
 constexpr double equal_rounding = 0x1p-49;
 
-/// The target's polynomials may stay on the triangle they were computed on when the space's frame
-/// is that triangle, up to the rounding of barycentric coordinates at its place in the plane.
-bool is_frame(const Frame& frame, const std::array<Vec2, 3>& corners) {
-  double slope = 0.0;
-  for (const Vec2& g : frame.gradient) slope = std::max({slope, std::abs(g[0]), std::abs(g[1])});
-  const double reach = std::max(std::abs(frame.centre[0]), std::abs(frame.centre[1]));
-  double largest = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Lambda l = frame.lambda(corners[k]);
-    for (std::size_t i = 0; i < 3; ++i)
-      largest = std::max(largest, std::abs(l[i] - (i == k ? 1.0 : 0.0)));
+constexpr std::size_t block = 512;  // elements a task
+
+/// Calls body(e) for all elements.
+template <class Body>
+void for_blocks(std::size_t elements, int threads, const Body& body) {
+  parallel_for((elements + block - 1) / block,
+               [&](std::size_t b) {
+                 for (std::size_t e = b * block; e < std::min(elements, (b + 1) * block); ++e)
+                   body(e);
+               },
+               threads);
+}
+
+/// One component of a donor field: its coefficients are `stride` apart.
+struct Column {
+  const double* first;
+  std::size_t stride;
+};
+
+std::vector<Column> columns_of(std::span<const Field* const> fields) {
+  std::vector<Column> columns;
+  for (const Field* f : fields) {
+    const auto own = static_cast<std::size_t>(f->components());
+    for (std::size_t c = 0; c < own; ++c) columns.push_back({f->coefficients().data() + c, own});
   }
-  return largest <= 0x1p-51 * (2.0 + reach * slope);
+  return columns;
+}
+
+/// Coefficients of one element from number `begin` on, times the factors, one column after the
+/// other.
+void scale_columns(std::span<const Column> columns, std::size_t begin,
+                   std::span<const double> factors, double* to) {
+  const std::size_t size = factors.size();
+  for (const Column& column : columns) {
+    const double* from = column.first + begin * column.stride;
+    for (std::size_t n = 0; n < size; ++n) to[n] = from[n * column.stride] * factors[n];
+    to += size;
+  }
+}
+
+/// Each of nc rows of `fixed` (0: of `size`) numbers times the matrix, as columns.
+template <std::size_t fixed>
+void multiply_rows(std::size_t size, std::size_t nc, const double* matrix, const double* from,
+                   double* to) {
+  constexpr std::size_t room =
+      fixed > 0 ? fixed : static_cast<std::size_t>(bernstein::triangle_size(max_moment_degree));
+  const std::size_t n = fixed > 0 ? fixed : size;
+  for (std::size_t c = 0; c < nc; ++c, from += n) {
+    std::array<double, room> sum{};
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t m = 0; m < n; ++m) sum[m] += from[i] * matrix[i * n + m];
+    for (std::size_t m = 0; m < n; ++m) to[m * nc + c] = sum[m];
+  }
 }
 
 }  // namespace
@@ -44,77 +86,62 @@ Frame affine_frame(const std::array<Vec2, 3>& p) {
 }
 
 Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
-             std::span<const Field* const> fields, std::shared_ptr<const Space> target_space_in)
+             std::span<const Field* const> fields, std::shared_ptr<const Space> target_space_in,
+             int threads)
     : donor_space(fields.front()->space_ptr()),
       target_space(std::move(target_space_in)),
+      components(static_cast<int>(field_detail::component_count(fields))),
       donor_degree{donor_space->highest_degree(), donor_space->uniform_degree()},
       donor_mapped(donor_space->basis() == Basis::reference && donor.degree > 1),
       target_mapped(target_space->basis() == Basis::reference && target.degree > 1) {
-  for (const Field* f : fields) components += f->components();
-  make_frames(donor, target);
-
-  const std::size_t elements = donor.element_count();
+  make_frames(donor, target, threads);
   const auto nc = static_cast<std::size_t>(components);
+  donor_integrals = field_detail::basis_integrals(*donor_space, threads);
+  donor_mass = field_detail::element_integrals(fields, donor_integrals, threads);
   scaled.resize(donor_space->coefficient_count() * nc);
-  donor_mass.resize(elements * nc);
-  donor_integrals = field_detail::basis_integrals(*donor_space);
-  std::size_t c0 = 0;
-  for (const Field* f : fields) {
-    const auto own = static_cast<std::size_t>(f->components());
-    const std::vector<double> masses = field_detail::element_integrals(*f, donor_integrals);
-    for (std::size_t e = 0; e < elements; ++e) {
-      const auto coefficients = f->coefficients(ElementId(e));
-      const auto factors = multinomials(donor_space->degree(ElementId(e)));
-      double* place = scaled.data() + donor_space->offset(ElementId(e)) * nc;
-      for (std::size_t c = 0; c < own; ++c) {
-        for (std::size_t n = 0; n < factors.size(); ++n) {
-          place[(c0 + c) * factors.size() + n] = coefficients[n * own + c] * factors[n];
-        }
-        donor_mass[e * nc + c0 + c] = masses[e * own + c];
-      }
-    }
-    c0 += own;
-  }
+  const std::vector<Column> columns = columns_of(fields);
+  for_blocks(donor.element_count(), threads, [&](std::size_t e) {
+    const std::size_t begin = donor_space->offset(ElementId(e));
+    scale_columns(columns, begin, multinomials(donor_space->degree(ElementId(e))),
+                  scaled.data() + begin * nc);
+  });
   out.resize(target_space->coefficient_count() * nc);
-  make_powers(elements);
+  make_powers(donor.element_count(), threads);
 }
 
 Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
              std::shared_ptr<const Space> donor_space_in,
              std::shared_ptr<const Space> target_space_in, int components_in,
-             DonorDegree donor_degree_in, std::vector<double> scaled_in,
-             std::vector<double> donor_mass_in)
+             DonorDegree donor_degree_in, std::span<const double> scaled_in,
+             std::vector<double> donor_mass_in, int threads)
     : donor_space(std::move(donor_space_in)),
       target_space(std::move(target_space_in)),
       components(components_in),
       donor_degree(donor_degree_in),
       donor_mapped(donor_space->basis() == Basis::reference && donor.degree > 1),
       target_mapped(target_space->basis() == Basis::reference && target.degree > 1),
-      scaled(std::move(scaled_in)),
+      scaled(scaled_in.begin(), scaled_in.end()),
       donor_mass(std::move(donor_mass_in)) {
-  make_frames(donor, target);
+  make_frames(donor, target, threads);
   out.resize(target_space->coefficient_count() * static_cast<std::size_t>(components));
-  make_powers(donor.element_count());
+  make_powers(donor.element_count(), threads);
 }
 
-void Group::make_powers(std::size_t elements) {
+void Group::make_powers(std::size_t elements, int threads) {
   const auto nc = static_cast<std::size_t>(components);
   if (donor_mapped || target_mapped) return;
-  powers.assign(scaled.size() + batch_padding, 0.0);
-  for (std::size_t e = 0; e < elements; ++e) {
+  powers.resize(scaled.size() + batch_padding);
+  std::fill(powers.end() - batch_padding, powers.end(), 0.0);
+  for_blocks(elements, threads, [&](std::size_t e) {
     const int degree = donor_space->degree(ElementId(e));
-    if (degree > max_moment_degree) continue;
-    const std::vector<double>& matrix = power_matrix(degree);
+    if (degree > max_moment_degree) return;
+    const std::size_t begin = donor_space->offset(ElementId(e)) * nc;
     const auto size = static_cast<std::size_t>(bernstein::triangle_size(degree));
-    const double* from = scaled.data() + donor_space->offset(ElementId(e)) * nc;
-    double* to = powers.data() + donor_space->offset(ElementId(e)) * nc;
-    for (std::size_t n = 0; n < size; ++n) {
-      for (std::size_t m = 0; m < size; ++m) {
-        const double factor = matrix[n * size + m];
-        for (std::size_t c = 0; c < nc; ++c) to[m * nc + c] += factor * from[c * size + n];
-      }
-    }
-  }
+    bernstein::with_triangle_size(size, [&](auto fixed) {
+      multiply_rows<fixed()>(size, nc, power_matrix(degree).data(), scaled.data() + begin,
+                             powers.data() + begin);
+    });
+  });
 }
 
 Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
@@ -126,7 +153,7 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
       donor_degree{donor_space->highest_degree(), donor_space->uniform_degree()},
       donor_mapped(donor_space->basis() == Basis::reference && donor.degree > 1),
       target_mapped(target_space->basis() == Basis::reference && target.degree > 1) {
-  make_frames(donor, target);
+  make_frames(donor, target, threads);
   const auto nc = static_cast<std::size_t>(components);
   for (int d = 0; d <= donor_space->highest_degree(); ++d) {
     scaled_offset_.push_back(scaled.size());
@@ -145,33 +172,31 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
   }
 }
 
-void Group::make_frames(const OverlayMesh& donor, const OverlayMesh& target) {
+void Group::make_frames(const OverlayMesh& donor, const OverlayMesh& target, int threads) {
   if (!donor_mapped) {
     donor_frame.resize(donor.element_count());
-    for (std::size_t e = 0; e < donor_frame.size(); ++e) {
+    for_blocks(donor_frame.size(), threads, [&](std::size_t e) {
       donor_frame[e] = donor_space->basis() == Basis::physical
                            ? donor_space->frame(ElementId(e))
                            : affine_frame(donor.corners(static_cast<std::int32_t>(e)));
-    }
+    });
   }
-  if (target_space->basis() == Basis::physical && target.degree == 1) {
-    other_frame.resize(target.element_count());
-    for (std::size_t e = 0; e < other_frame.size(); ++e) {
-      const bool same =
-          target.degree == 1 &&
-          is_frame(target_space->frame(ElementId(e)), target.corners(static_cast<std::int32_t>(e)));
-      other_frame[e] = same ? 0 : 1;
+  if (target_mapped) return;
+  // The target's polynomials may stay on the triangle they are computed on when the space's frame
+  // is that triangle.
+  const bool physical = target_space->basis() == Basis::physical;
+  if (physical && target.degree == 1) other_frame.resize(target.element_count());
+  target_frame.resize(target.element_count());
+  for_blocks(target_frame.size(), threads, [&](std::size_t e) {
+    const auto t = static_cast<std::int32_t>(e);
+    target_frame[e] = !physical || target.degree == 1 ? affine_frame(target.corners(t))
+                                                      : target_space->frame(ElementId(e));
+    if (!other_frame.empty()) {
+      const bool own =
+          field_detail::is_own_frame(target_space->frame(ElementId(e)), target.corners(t));
+      other_frame[e] = own ? 0 : 1;
     }
-  }
-  if (!target_mapped) {
-    target_frame.resize(target.element_count());
-    for (std::size_t e = 0; e < target_frame.size(); ++e) {
-      const auto t = static_cast<std::int32_t>(e);
-      target_frame[e] = target_space->basis() == Basis::reference || target.degree == 1
-                            ? affine_frame(target.corners(t))
-                            : target_space->frame(ElementId(e));
-    }
-  }
+  });
 }
 
 std::span<const double> Group::donor_scaled(std::int32_t e) const {
@@ -202,6 +227,47 @@ std::span<double> Group::target_out(std::int32_t e) {
   const auto nc = static_cast<std::size_t>(components);
   const auto size = static_cast<std::size_t>(bernstein::triangle_size(target_space->degree(id)));
   return {out.data() + target_space->offset(id) * nc, size * nc};
+}
+
+void Group::drop_donor() {
+  scaled = {};
+  powers = {};
+}
+
+std::vector<std::vector<double>> take_fields(Group& g, std::span<const std::size_t> components,
+                                             int threads) {
+  std::vector<std::vector<double>> parts(components.size());
+  if (components.size() == 1) {
+    parts[0] = std::move(g.out);
+    return parts;
+  }
+  const std::size_t rows = g.target_space->coefficient_count();
+  const auto all = static_cast<std::size_t>(g.components);
+  std::vector<std::size_t> first(components.size(), 0);
+  for (std::size_t m = 1; m < first.size(); ++m) first[m] = first[m - 1] + components[m - 1];
+  // Some fields a task, some rows for one field after the other: what lies side by side is read
+  // once, and what is written need not be set to 0 before.
+  constexpr std::size_t some_rows = 64, some_fields = 8;
+  parallel_for(
+      (components.size() + some_fields - 1) / some_fields,
+      [&](std::size_t task) {
+        const std::size_t begin = task * some_fields,
+                          end = std::min(begin + some_fields, components.size());
+        for (std::size_t m = begin; m < end; ++m) parts[m].reserve(rows * components[m]);
+        std::array<double, some_rows* static_cast<std::size_t>(Field::max_components)> buffer;
+        for (std::size_t r = 0; r < rows; r += some_rows) {
+          const std::size_t count = std::min(some_rows, rows - r);
+          for (std::size_t m = begin; m < end; ++m) {
+            const std::size_t own = components[m];
+            const double* from = g.out.data() + r * all + first[m];
+            for (std::size_t n = 0; n < count; ++n)
+              for (std::size_t c = 0; c < own; ++c) buffer[n * own + c] = from[n * all + c];
+            parts[m].insert(parts[m].end(), buffer.data(), buffer.data() + count * own);
+          }
+        }
+      },
+      threads);
+  return parts;
 }
 
 std::array<double, 2> donor_place(const Group& g, const OverlayMesh& donor, std::int32_t d,

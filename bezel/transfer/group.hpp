@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bezel/field/field.hpp"
+#include "bezel/numeric/numbers.hpp"
 #include "bezel/transfer/overlay_mesh.hpp"
 
 namespace bezel::detail {
@@ -24,7 +25,7 @@ struct DonorDegree {
 /// The components of all donor fields that share a donor space and go to the same target space.
 struct Group {
   Group(const OverlayMesh& donor, const OverlayMesh& target, std::span<const Field* const> fields,
-        std::shared_ptr<const Space> target_space);
+        std::shared_ptr<const Space> target_space, int threads);
   /// The donor's basis functions as components: component c is basis function c of every element
   /// (zero on elements of lower degree).
   Group(const OverlayMesh& donor, const OverlayMesh& target,
@@ -34,8 +35,8 @@ struct Group {
   /// On parts of the meshes: `scaled` and `donor_mass` are those of a group on the whole ones.
   Group(const OverlayMesh& donor, const OverlayMesh& target,
         std::shared_ptr<const Space> donor_space, std::shared_ptr<const Space> target_space,
-        int components, DonorDegree donor_degree, std::vector<double> scaled,
-        std::vector<double> donor_mass);
+        int components, DonorDegree donor_degree, std::span<const double> scaled,
+        std::vector<double> donor_mass, int threads);
 
   std::shared_ptr<const Space> donor_space, target_space;
   std::shared_ptr<const Space> continuous_space;  ///< where the result is projected next, or null
@@ -49,13 +50,13 @@ struct Group {
   std::vector<Frame> target_frame;
   std::vector<std::uint8_t> other_frame;  ///< whether the space's own frame is another one, by
                                           ///< target element; empty when the space has none
-  std::vector<double> scaled;             ///< donor coefficients times multinomials, per element
+  Numbers scaled;                         ///< donor coefficients times multinomials, per element
                                           ///< [component][n]; of basis functions per degree
   std::vector<double> donor_integrals;    ///< of the donor's basis functions; not of basis groups
   std::vector<double> donor_mass;         ///< per element [component]
   /// Coefficients of the monomials in the barycentrics less 1/3, per element [n][component]: of
   /// donors that are not mapped and have at most max_moment_degree.
-  std::vector<double> powers;
+  Numbers powers;
   std::vector<double> out;  ///< target coefficients, per element [n][component]
 
   std::span<const double> donor_scaled(std::int32_t e) const;
@@ -66,15 +67,22 @@ struct Group {
   /// the first of them: a constant less this number is 0.
   double constant_of(const OverlayMesh& donor, std::int32_t e, std::size_t component) const;
   std::span<double> target_out(std::int32_t e);
+  /// Frees the donor's coefficients: nothing can be integrated any more.
+  void drop_donor();
   bool in_other_frame(std::int32_t t) const {
     return !other_frame.empty() && other_frame[static_cast<std::size_t>(t)] != 0;
   }
 
  private:
-  void make_powers(std::size_t elements);
-  void make_frames(const OverlayMesh& donor, const OverlayMesh& target);
+  void make_powers(std::size_t elements, int threads);
+  void make_frames(const OverlayMesh& donor, const OverlayMesh& target, int threads);
   std::vector<std::size_t> scaled_offset_;  // per degree, for basis functions
 };
+
+/// The coefficients of a group's fields, one field after the other; taken out of the group.
+/// @param components  of each field
+std::vector<std::vector<double>> take_fields(Group& g, std::span<const std::size_t> components,
+                                             int threads);
 
 /// Where point x lies for the polynomial of donor element d: barycentrics 1 and 2 in its frame, or
 /// in the reference triangle when it is mapped. `warm`: the last barycentrics found in d, when

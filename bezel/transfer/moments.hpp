@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "bezel/field/space.hpp"
+#include "bezel/numeric/lanes.hpp"
 #include "bezel/numeric/vec.hpp"
-#include "bezel/transfer/lanes.hpp"
 
 namespace bezel::detail {
 

@@ -317,7 +317,14 @@ TransferResult TransferOperator::transfer(std::span<const Field> donors, const B
       applied.field = detail::with_coefficients(applied.field, limited);
     }
     result.fields.push_back(std::move(applied.field));
-    const auto lines = reports.add(k, f, result.fields.back(), outside, made, {}, defect);
+    reports.add({&k, 1}, {std::array{&f},
+                          std::array{&std::as_const(result.fields.back())},
+                          outside,
+                          made,
+                          {},
+                          defect,
+                          {}});
+    const auto lines = reports.lines(k);
     for (std::size_t c = 0; c < limited.size(); ++c) {
       lines[c].min_after = limited[c].range.lo;
       lines[c].max_after = limited[c].range.hi;

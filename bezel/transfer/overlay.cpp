@@ -37,11 +37,11 @@ ElementOverlay::ElementOverlay(const OverlayMesh& donor, const OverlayMesh& targ
     : donor_(donor),
       target_(target),
       search_(search),
-      record_place_(target.edge_box.size()),
+      record_place_(target.edge_count()),
       vertex_place_(target.mesh->node_count(), unlocated),
-      inner_place_(donor.edge_box.size()),
+      inner_place_(donor.edge_count()),
       inside_stamp_(donor.mesh->node_count(), 0),
-      edge_stamp_(donor.edge_box.size(), 0),
+      edge_stamp_(donor.edge_count(), 0),
       group_(donor.element_count() + 1) {}
 
 void ElementOverlay::begin_chunk(std::span<const std::int32_t> elements) {
@@ -168,26 +168,26 @@ bool ElementOverlay::meet_ordinarily(const CurveCache& curve, const CurveCache& 
 void ElementOverlay::overlay_edge(Record& record) {
   const std::int32_t edge = record.edge;
   const auto curve = target_.edge(edge);
-  Box2 box = target_.edge_box[static_cast<std::size_t>(edge)];
+  CurveCache own_room, facing_room;
+  const CurveCache& own = target_.edge_cache(edge, own_room);
+  const Box2& box = own.box;
+  const double own_width = target_.edge_width(edge);
   record.details = static_cast<std::int32_t>(details_.size());
   Details& details = details_.emplace_back();
   details.contact_begin = static_cast<std::uint32_t>(contacts_.size());
   details.coincidence_begin = static_cast<std::uint32_t>(coincidences_.size());
   details.piece_begin = static_cast<std::uint32_t>(pieces_.size());
 
-  const CurveCache& own = target_.edge_cache[static_cast<std::size_t>(edge)];
   Box2 generous = box;
   const double generous_room = std::max(1e-9 * own.diameter, coordinate_rounding * own.magnitude);
   generous.lo -= Vec2{{generous_room, generous_room}};
   generous.hi += Vec2{{generous_room, generous_room}};
   for (const std::int32_t e : candidate_edges_) {
-    const Box2& other = donor_.edge_box[static_cast<std::size_t>(e)];
+    const Box2 other = donor_.edge_box(e);
     if (!generous.overlaps(other)) continue;
-    const CurveCache& facing = donor_.edge_cache[static_cast<std::size_t>(e)];
-    const double distance =
-        coincidence_distance(std::min(target_.edge_width[static_cast<std::size_t>(edge)],
-                                      donor_.edge_width[static_cast<std::size_t>(e)]),
-                             std::max(own.magnitude, facing.magnitude));
+    const CurveCache& facing = donor_.edge_cache(e, facing_room);
+    const double distance = coincidence_distance(std::min(own_width, donor_.edge_width(e)),
+                                                 std::max(own.magnitude, facing.magnitude));
     const Vec2 room{{distance, distance}};
     Box2 wide = box;
     wide.lo -= room;

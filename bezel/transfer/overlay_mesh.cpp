@@ -24,24 +24,26 @@ OverlayMesh::OverlayMesh(std::shared_ptr<const TriangleMesh> source, const std::
     : mesh(std::move(source)),
       degree(mesh->degree()),
       element_size(static_cast<std::size_t>(mesh->nodes_per_element())) {
+  lay_out_edges(what, threads);
+  lay_out_elements(what, threads);
+}
+
+void OverlayMesh::lay_out_edges(const std::string& what, int threads) {
   const std::size_t edges = mesh->edge_count();
-  const std::size_t elements = mesh->element_count();
   const auto edge_size = static_cast<std::size_t>(degree + 1);
   edge_control.resize(edges * edge_size);
-  edge_box.resize(edges);
-  edge_cache.resize(edges);
   edge_sides.resize(edges);
   edge_vertex.resize(edges);
-  for (std::size_t e = 0; e < edges; ++e) {
+  if (degree > 1) edge_cache_.resize(edges);
+  const auto lay_out = [&](std::size_t e) {
     const std::span<Vec2> control(edge_control.data() + e * edge_size, edge_size);
-    mesh->gather_edge(EdgeId(e), control);
-    for (const Vec2& p : control) edge_box[e].include(p);
-    edge_cache[e] = cache_curve(control);
-    edge_sides[e] = {exterior, exterior};
     const auto nodes = mesh->edge_nodes(EdgeId(e));
+    for (std::size_t k = 0; k < edge_size; ++k) control[k] = mesh->control(nodes[k]);
+    if (degree > 1) edge_cache_[e] = cache_curve(control);
     edge_vertex[e] = {nodes.front().value, nodes.back().value};
+    std::array<std::int32_t, 2> sides = {exterior, exterior};
     for (const ElementSide& side : mesh->adjacent(EdgeId(e))) {
-      std::int32_t& place = edge_sides[e][side.reversed ? 1 : 0];
+      std::int32_t& place = sides[side.reversed ? 1 : 0];
       if (place != exterior) {
         throw InputError({"", 0, "triangle", side.element.value},
                          what + " mesh: lies on the same side of an edge as triangle " +
@@ -50,39 +52,64 @@ OverlayMesh::OverlayMesh(std::shared_ptr<const TriangleMesh> source, const std::
       }
       place = side.element.value;
     }
-  }
+    edge_sides[e] = sides;
+  };
+  parallel_for((edges + block - 1) / block,
+               [&](std::size_t b) {
+                 for (std::size_t e = b * block; e < std::min(edges, (b + 1) * block); ++e)
+                   lay_out(e);
+               },
+               threads);
+}
+
+void OverlayMesh::lay_out_elements(const std::string& what, int threads) {
+  const std::size_t elements = mesh->element_count();
   element_edges.resize(elements);
   element_control.resize(elements * element_size);
   element_box.resize(elements);
   element_area.resize(elements);
   element_diameter.resize(elements);
+  const auto lay_out = [&](std::size_t e) {
+    element_edges[e] = mesh->edges(ElementId(e));
+    const std::span<Vec2> control(element_control.data() + e * element_size, element_size);
+    const auto nodes = mesh->nodes(ElementId(e));
+    Box2 around;
+    for (std::size_t k = 0; k < element_size; ++k) {
+      control[k] = mesh->control(nodes[k]);
+      around.include(control[k]);
+    }
+    element_box[e] = around;
+    element_diameter[e] = around.diameter();
+    const ValidityResult validity = check_validity(degree, control);
+    if (validity.status == Validity::inverted) {
+      throw InputError({"", 0, "triangle", static_cast<std::int64_t>(e)},
+                       what + " mesh: the element is inverted (its Jacobian is " +
+                           std::to_string(validity.det) +
+                           " at one place), expected it positive everywhere");
+    }
+    element_area[e] = degree == 1 ? 0.5 * validity.det : area(degree, control);
+  };
   parallel_for((elements + block - 1) / block,
                [&](std::size_t b) {
-                 for (std::size_t e = b * block; e < std::min(elements, (b + 1) * block); ++e) {
-                   element_edges[e] = mesh->edges(ElementId(e));
-                   const std::span<Vec2> control(element_control.data() + e * element_size,
-                                                 element_size);
-                   mesh->gather(ElementId(e), control);
-                   for (const Vec2& p : control) element_box[e].include(p);
-                   element_diameter[e] = element_box[e].diameter();
-                   const ValidityResult validity = check_validity(degree, control);
-                   if (validity.status == Validity::inverted) {
-                     throw InputError({"", 0, "triangle", static_cast<std::int64_t>(e)},
-                                      what + " mesh: the element is inverted (its Jacobian is " +
-                                          std::to_string(validity.det) +
-                                          " at one place), expected it positive everywhere");
-                   }
-                   element_area[e] = area(degree, control);
-                 }
+                 for (std::size_t e = b * block; e < std::min(elements, (b + 1) * block); ++e)
+                   lay_out(e);
                },
                threads);
   for (const Box2& b : element_box) box.include(b);
-  edge_width.resize(edges);
-  for (std::size_t e = 0; e < edges; ++e) {
-    edge_width[e] = edge_cache[e].diameter;
-    for (const std::int32_t side : edge_sides[e])
-      if (side != exterior) edge_width[e] = std::min(edge_width[e], element_width(side));
-  }
+}
+
+Box2 OverlayMesh::edge_box(std::int32_t e) const {
+  if (degree > 1) return edge_cache_[static_cast<std::size_t>(e)].box;
+  Box2 around;
+  for (const Vec2& p : edge(e)) around.include(p);
+  return around;
+}
+
+double OverlayMesh::edge_width(std::int32_t e) const {
+  double width = edge_box(e).diameter();
+  for (const std::int32_t side : edge_sides[static_cast<std::size_t>(e)])
+    if (side != exterior) width = std::min(width, element_width(side));
+  return width;
 }
 
 std::array<Vec2, 3> OverlayMesh::corners(std::int32_t e) const {
@@ -217,7 +244,7 @@ void FrontSearch::query(const Box2& box, std::span<const std::int32_t> near, Mem
         const std::int32_t next = mesh_.across(out[i], side.edge.value);
         if (next == exterior) {
           // Beyond the boundary (a hole, a bay) there may be elements that the walk cannot reach.
-          if (mesh_.edge_box[side.edge.index()].overlaps(box)) {
+          if (mesh_.edge_box(side.edge.value).overlaps(box)) {
             complete = false;
             break;
           }

@@ -29,8 +29,6 @@ struct OverlayMesh {
   int degree = 1;
   std::size_t element_size = 0;    ///< control points per element
   std::vector<Vec2> edge_control;  ///< (degree+1) per edge, canonical direction
-  std::vector<Box2> edge_box;
-  std::vector<CurveCache> edge_cache;
   std::vector<std::array<std::int32_t, 2>>
       edge_sides;  ///< element left and right of each edge, or exterior
   std::vector<std::array<std::int32_t, 2>> edge_vertex;  ///< nodes at an edge's ends
@@ -39,7 +37,6 @@ struct OverlayMesh {
   std::vector<Box2> element_box;
   std::vector<double> element_area;      ///< exact up to rounding
   std::vector<double> element_diameter;  ///< of the boxes
-  std::vector<double> edge_width;        ///< smallest width of the elements beside each edge
   Box2 box;
   std::vector<std::int32_t> numbers;  ///< of a part of a mesh: the elements' numbers in the whole
 
@@ -47,6 +44,7 @@ struct OverlayMesh {
     return numbers.empty() ? e : numbers[static_cast<std::size_t>(e)];
   }
   std::size_t element_count() const { return element_box.size(); }
+  std::size_t edge_count() const { return edge_sides.size(); }
   std::span<const Vec2> edge(std::int32_t e) const {
     const auto n = static_cast<std::size_t>(degree + 1);
     return {edge_control.data() + static_cast<std::size_t>(e) * n, n};
@@ -54,6 +52,15 @@ struct OverlayMesh {
   std::span<const Vec2> element(std::int32_t e) const {
     return {element_control.data() + static_cast<std::size_t>(e) * element_size, element_size};
   }
+  /// What intersections need of edge e: what is stored, or `room`, filled here for a straight edge
+  /// (most of them are never asked for).
+  const CurveCache& edge_cache(std::int32_t e, CurveCache& room) const {
+    if (degree > 1) return edge_cache_[static_cast<std::size_t>(e)];
+    return room = cache_curve(edge(e));
+  }
+  Box2 edge_box(std::int32_t e) const;
+  /// The smallest width of the elements beside edge e.
+  double edge_width(std::int32_t e) const;
   /// The element on the other side of edge e, or exterior.
   std::int32_t across(std::int32_t element, std::int32_t e) const {
     const auto& s = edge_sides[static_cast<std::size_t>(e)];
@@ -68,6 +75,12 @@ struct OverlayMesh {
   /// Elements in an order in which neighbours in the list are near each other (Morton order of the
   /// box centres).
   std::vector<std::int32_t> spatial_order() const;
+
+ private:
+  void lay_out_edges(const std::string& what, int threads);
+  void lay_out_elements(const std::string& what, int threads);
+
+  std::vector<CurveCache> edge_cache_;  // of curved edges
 };
 
 /// Finds the elements whose boxes overlap a box by walking over the adjacency graph from a known

@@ -95,7 +95,8 @@ bool ElementOverlay::walk_edge(Record& record) {
   const std::int32_t first = donor_at_vertex(ends[0], ends[1]),
                      last = donor_at_vertex(ends[1], ends[0]);
   if (first == exterior || last == exterior) return false;
-  const CurveCache& curve = target_.edge_cache[static_cast<std::size_t>(edge)];
+  CurveCache room, other_room;
+  const CurveCache& curve = target_.edge_cache(edge, room);
   const auto begin = contacts_.size();
   const auto give_up = [&] {
     contacts_.resize(begin);
@@ -110,7 +111,7 @@ bool ElementOverlay::walk_edge(Record& record) {
       std::uint32_t& stamp = inner_place_[side.edge.index()].stamp;
       if (stamp == now_) continue;
       stamp = now_;
-      const CurveCache& other = donor_.edge_cache[side.edge.index()];
+      const CurveCache& other = donor_.edge_cache(side.edge.value, other_room);
       const double distance = coincidence_distance(curve, other);
       if (curve.box.lo[0] > other.box.hi[0] + distance ||
           other.box.lo[0] > curve.box.hi[0] + distance ||

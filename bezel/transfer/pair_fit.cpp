@@ -218,7 +218,7 @@ void PairFit::make_target_points(std::span<const Segment> segments) {
   own_.clear();
   pulled_.clear();
   runs_.resize(segments.size());
-  if (seen_.size() < donor_.edge_box.size()) seen_.resize(donor_.edge_box.size());
+  if (seen_.size() < donor_.edge_count()) seen_.resize(donor_.edge_count());
   ++stamp_;
   // Degrees that interpolation adds are small and need no exact rule.
   const int pd = g_->donor_degree.highest;

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "bezel/numeric/lanes.hpp"
 #include "bezel/numeric/vec.hpp"
-#include "bezel/transfer/lanes.hpp"
 
 namespace bezel::detail {
 

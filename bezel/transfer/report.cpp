@@ -20,41 +20,44 @@ void Reports::know(const std::shared_ptr<const Space>& space, std::vector<double
   measures(space).basis_integrals = std::move(basis_integrals);
 }
 
-std::span<FieldReport> Reports::add(std::size_t place, const Field& donor, const Field& moved,
-                                    std::span<const double> outside, std::span<const double> made,
-                                    std::span<const double> spread,
-                                    std::span<const double> element_defect) {
-  const auto element_masses = [&](const Field& f) {
-    Measures& m = measures(f);
-    if (m.basis_integrals.empty())
-      m.basis_integrals = field_detail::basis_integrals(f.space(), threads_);
-    return field_detail::element_integrals(f, m.basis_integrals, threads_);
-  };
-  const std::vector<double> own = element_masses(donor);
-  const auto before = field_detail::integral(donor, own);
-  const auto after = field_detail::integral(moved, element_masses(moved));
-  Measures& of_donor = measures(donor);
+std::vector<double> Reports::element_masses(std::span<const Field* const> fields) {
+  Measures& m = measures(*fields.front());
+  if (m.basis_integrals.empty())
+    m.basis_integrals = field_detail::basis_integrals(*m.space, threads_);
+  return field_detail::element_integrals(fields, m.basis_integrals, threads_);
+}
+
+void Reports::add(std::span<const std::size_t> places, const MovedFields& fields) {
+  const std::size_t components = field_detail::component_count(fields.donors);
+  std::vector<double> found;
+  if (fields.element_mass.empty()) found = element_masses(fields.donors);
+  const std::span<const double> own = found.empty() ? fields.element_mass : found;
+  const auto before = field_detail::integral(own, components);
+  const auto after = field_detail::integral(element_masses(fields.moved), components);
+  Measures& of_donor = measures(*fields.donors.front());
   if (!of_donor.abs_integral)
-    of_donor.abs_integral = std::make_unique<field_detail::AbsIntegral>(donor.space_ptr());
-  const auto size = (*of_donor.abs_integral)(donor, own, threads_);
-  const std::size_t first = lines_[place].size();
-  for (std::size_t c = 0; c < before.size(); ++c) {
-    FieldReport line;
-    line.name = donor.name();
-    line.component = static_cast<int>(c);
-    line.mass_before = before[c];
-    line.mass_after = after[c];
-    line.mass_outside = outside[c];
-    line.mass_made = made[c];
-    if (!spread.empty()) line.mass_spread = spread[c];
-    const double defect =
-        after[c] - (before[c] - line.mass_outside + line.mass_made + line.mass_spread);
-    const double scale = size[c] > 0.0 ? size[c] : 1.0;
-    line.relative_mass_defect = std::abs(defect) / scale;
-    line.max_element_defect = element_defect[c] / scale;
-    add(place, donor, moved, std::move(line));
+    of_donor.abs_integral = std::make_unique<field_detail::AbsIntegral>(of_donor.space, threads_);
+  const auto size = (*of_donor.abs_integral)(fields.donors, own, threads_);
+  std::size_t c = 0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Field& donor = *fields.donors[k];
+    for (int component = 0; component < donor.components(); ++component, ++c) {
+      FieldReport line;
+      line.name = donor.name();
+      line.component = component;
+      line.mass_before = before[c];
+      line.mass_after = after[c];
+      line.mass_outside = fields.outside[c];
+      line.mass_made = fields.made[c];
+      if (!fields.spread.empty()) line.mass_spread = fields.spread[c];
+      const double defect =
+          after[c] - (before[c] - line.mass_outside + line.mass_made + line.mass_spread);
+      const double scale = size[c] > 0.0 ? size[c] : 1.0;
+      line.relative_mass_defect = std::abs(defect) / scale;
+      line.max_element_defect = fields.element_defect[c] / scale;
+      add(places[k], donor, *fields.moved[k], std::move(line));
+    }
   }
-  return std::span(lines_[place]).subspan(first);
 }
 
 void Reports::add(std::size_t place, const Field& donor, const Field& moved, FieldReport line) {
@@ -67,7 +70,7 @@ void Reports::add(std::size_t place, const Field& donor, const Field& moved, Fie
 std::vector<FieldReport> Reports::finish() {
   const auto prepare = [&](const Field& f) {
     Measures& m = measures(f);
-    if (!m.ranges) m.ranges = std::make_unique<ValueRanges>(f.space_ptr());
+    if (!m.ranges) m.ranges = std::make_unique<ValueRanges>(f.space_ptr(), threads_);
   };
   for (const Sought& s : sought_) {
     prepare(*s.donor);

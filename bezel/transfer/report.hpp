@@ -11,6 +11,16 @@
 
 namespace bezel::detail {
 
+/// Fields of one space that became fields of one space, and what is known of their components,
+/// which are numbered one field after the other.
+struct MovedFields {
+  std::span<const Field*const> donors, moved;
+  std::span<const double> outside, made, spread;  ///< masses
+  std::span<const double> element_defect;         ///< largest |element mass - mass received|
+  std::span<const double> element_mass;           ///< of the donors, shape (elements, components);
+                                                  ///< empty: not known
+};
+
 /// The lines of a report, one per component of a field that was moved. What depends on the elements
 /// only (integrals of basis functions, where elements lie in their frames) is done once per space,
 /// and ranges are sought by all threads at the end.
@@ -22,16 +32,14 @@ class Reports {
   /// Saves the work where the integrals of a space's basis functions are known already.
   void know(const std::shared_ptr<const Space>& space, std::vector<double> basis_integrals);
 
-  /// Field number `place`; donor and moved must stay where they are until finish().
-  /// @param spread          mass added besides, or empty
-  /// @param element_defect  largest |element mass - mass received|, per component
-  /// @return the lines, to be completed
-  std::span<FieldReport> add(std::size_t place, const Field& donor, const Field& moved,
-                             std::span<const double> outside, std::span<const double> made,
-                             std::span<const double> spread,
-                             std::span<const double> element_defect);
+  /// Adds the lines of some fields; they must stay where they are until finish().
+  /// @param places  numbers of the fields
+  void add(std::span<const std::size_t> places, const MovedFields& fields);
   /// A line whose masses are known.
   void add(std::size_t place, const Field& donor, const Field& moved, FieldReport line);
+
+  /// The lines of a field, to be completed.
+  std::span<FieldReport> lines(std::size_t place) { return lines_[place]; }
 
   /// All lines, with their ranges: the narrower of what add()'s caller set and what is found.
   std::vector<FieldReport> finish();
@@ -50,6 +58,7 @@ class Reports {
   };
   Measures& measures(const std::shared_ptr<const Space>& space);
   Measures& measures(const Field& field) { return measures(field.space_ptr()); }
+  std::vector<double> element_masses(std::span<const Field* const> fields);
 
   std::vector<std::vector<FieldReport>> lines_;
   std::vector<Sought> sought_;

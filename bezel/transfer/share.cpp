@@ -78,7 +78,8 @@ void write_group(const Share& share, const Group& g, MessageWriter& out) {
   out.list(mass);
 }
 
-Group read_group(const OverlayMesh& donor, const OverlayMesh& target, MessageReader& in) {
+Group read_group(const OverlayMesh& donor, const OverlayMesh& target, MessageReader& in,
+                 int threads) {
   const int components = in.value<int>();
   const auto donor_degree = in.value<DonorDegree>();
   const auto basis = in.value<Basis>();
@@ -90,10 +91,10 @@ Group read_group(const OverlayMesh& donor, const OverlayMesh& target, MessageRea
                          ? Space::discontinuous(donor.mesh, std::move(degrees), std::move(frames))
                          : Space::discontinuous(donor.mesh, std::move(degrees), basis);
   auto target_space = Space::discontinuous(target.mesh, target_degree, target_basis);
-  std::vector<double> scaled = in.list<double>();
+  const std::vector<double> scaled = in.list<double>();
   std::vector<double> mass = in.list<double>();
   return Group(donor, target, std::move(donor_space), std::move(target_space), components,
-               donor_degree, std::move(scaled), std::move(mass));
+               donor_degree, scaled, std::move(mass), threads);
 }
 
 void write_chunk(const ChunkResult& chunk, const OverlayMesh& donor, const OverlayMesh& target,
@@ -204,7 +205,8 @@ ShareReport work_on(MessageReader& in, int threads, MessageWriter& out) {
   donor.numbers = std::move(donor_part.numbers);
   OverlayMesh target(std::move(target_part.mesh), "target", threads);
   target.numbers = std::move(target_part.numbers);
-  for (std::uint64_t i = 0; i < group_count; ++i) groups.push_back(read_group(donor, target, in));
+  for (std::uint64_t i = 0; i < group_count; ++i)
+    groups.push_back(read_group(donor, target, in, threads));
   const FrontSearch search(donor, connected);
   const std::vector<ChunkResult> chunks =
       sweep_elements(donor, target, search, groups, own, options, {});

@@ -76,7 +76,7 @@ std::vector<std::uint8_t> rim_donors(const OverlayMesh& donor, const OverlayMesh
   for (std::size_t e = 0; e < target.edge_sides.size(); ++e) {
     const auto& sides = target.edge_sides[e];
     if (sides[0] != exterior && sides[1] != exterior) continue;
-    Box2 box = target.edge_box[e];
+    Box2 box = target.edge_box(static_cast<std::int32_t>(e));
     const double room = 1e-9 * box.diameter();
     box.lo -= Vec2{{room, room}};
     box.hi += Vec2{{room, room}};

@@ -74,28 +74,10 @@ Plan make_plan(std::span<const Field> donors,
     if (!space) space = Space::discontinuous(target_mesh, keys[k].degree, keys[k].basis);
     std::vector<const Field*> fields;
     for (const std::size_t i : plan.members[k]) fields.push_back(&donors[i]);
-    plan.groups.emplace_back(donor, target, fields, std::move(space));
+    plan.groups.emplace_back(donor, target, fields, std::move(space), options.threads);
     plan.groups.back().continuous_space = std::move(continuous_space);
   }
   return plan;
-}
-
-/// The coefficients of a group's fields, one field after the other.
-std::vector<std::vector<double>> part_fields(const detail::Group& g, std::span<const Field> donors,
-                                             std::span<const std::size_t> members) {
-  const std::size_t rows = g.target_space->coefficient_count();
-  std::vector<std::vector<double>> parts;
-  std::vector<std::size_t> own;
-  for (const std::size_t i : members) {
-    own.push_back(static_cast<std::size_t>(donors[i].components()));
-    parts.emplace_back(rows * own.back());
-  }
-  // Row after row for all fields, so that what the group has is read once.
-  const double* from = g.out.data();
-  for (std::size_t n = 0; n < rows; ++n)
-    for (std::size_t m = 0; m < parts.size(); from += own[m], ++m)
-      std::copy_n(from, own[m], parts[m].data() + n * own[m]);
-  return parts;
 }
 
 void check_arguments(std::span<const Field> donors,
@@ -167,8 +149,10 @@ TransferResult detail::transfer_by(const Sweeper& sweeper, std::span<const Field
   const detail::OverlayMesh target(target_mesh, "target", options.threads);
   Plan plan = make_plan(donors, target_mesh, donor, target, options);
   const detail::FrontSearch search(donor);
-  const std::vector<detail::ChunkResult> chunks =
+  const double prepared = seconds_since(start);
+  std::vector<detail::ChunkResult> chunks =
       sweeper(donor, target, search, plan.groups, options, progress);
+  const auto swept_at = clock::now();
   detail::Swept swept = detail::balance(chunks, donor.element_area,
                                         detail::component_count(plan.groups), options.uncovered);
   const std::size_t components = swept.made.size();
@@ -211,6 +195,7 @@ TransferResult detail::transfer_by(const Sweeper& sweeper, std::span<const Field
   if (options.bounds.kind != Bounds::Kind::none)
     bounds.emplace(donor.element_area, target.element_area, chunks, report, options);
   std::vector<detail::ContinuousOutcome> continuous;
+  double solve_seconds = 0.0;
   if (options.continuity == Continuity::continuous) {
     detail::BoundsOf limits;
     if (bounds) {
@@ -225,74 +210,91 @@ TransferResult detail::transfer_by(const Sweeper& sweeper, std::span<const Field
     }
     const auto solve_start = clock::now();
     continuous = detail::make_continuous(plan.groups, donor, target, search, options, limits);
-    report.seconds.solve += seconds_since(solve_start);
+    solve_seconds = seconds_since(solve_start);
+    report.seconds.solve += solve_seconds;
   }
+
+  // What is not needed any more makes room.
+  chunks.clear();
+  for (detail::Group& g : plan.groups) g.drop_donor();
 
   std::vector<std::optional<Field>> fields(donors.size());
   detail::Reports reports(donors.size(), options.threads);
   for (detail::Group& g : plan.groups) reports.know(g.donor_space, std::move(g.donor_integrals));
   std::size_t c0 = 0;
   for (std::size_t k = 0; k < plan.groups.size(); ++k) {
-    const detail::Group& g = plan.groups[k];
+    detail::Group& g = plan.groups[k];
+    const std::vector<std::size_t>& members = plan.members[k];
     const auto nc = static_cast<std::size_t>(g.components);
-    std::vector<std::vector<double>> parted = part_fields(g, donors, plan.members[k]);
-    std::size_t first = 0;
-    for (std::size_t m = 0; m < parted.size(); ++m) {
-      const std::size_t i = plan.members[k][m];
-      const auto own = static_cast<std::size_t>(donors[i].components());
-      std::vector<double>& coefficients = parted[m];
-      std::vector<double> spread_mass(own, 0.0);
-      std::vector<double> spread_change(own, 0.0);
-      for (std::size_t a = 0; a < added.element.size(); ++a) {
-        const ElementId e(added.element[a]);
-        const auto size =
-            static_cast<std::size_t>(bernstein::triangle_size(g.target_space->degree(e)));
-        for (std::size_t c = 0; c < own; ++c) {
-          const double mass = added.mass[a * components + c0 + first + c];
+    std::vector<std::size_t> field_components;
+    for (const std::size_t i : members)
+      field_components.push_back(static_cast<std::size_t>(donors[i].components()));
+    std::vector<std::vector<double>> parted =
+        detail::take_fields(g, field_components, options.threads);
+    std::vector<double> spread_mass(nc, 0.0), spread_change(nc, 0.0);
+    for (std::size_t a = 0; a < added.element.size(); ++a) {
+      const ElementId e(added.element[a]);
+      const auto size =
+          static_cast<std::size_t>(bernstein::triangle_size(g.target_space->degree(e)));
+      std::size_t place = 0;
+      for (std::size_t m = 0; m < members.size(); ++m) {
+        const std::size_t own = field_components[m];
+        for (std::size_t c = 0; c < own; ++c, ++place) {
+          const double mass = added.mass[a * components + c0 + place];
           const double step = mass / target.element_area[e.index()];
           for (std::size_t n = 0; n < size; ++n)
-            coefficients[(g.target_space->offset(e) + n) * own + c] += step;
-          spread_mass[c] += mass;
-          spread_change[c] = std::max(spread_change[c], std::abs(step));
+            parted[m][(g.target_space->offset(e) + n) * own + c] += step;
+          spread_mass[place] += mass;
+          spread_change[place] = std::max(spread_change[place], std::abs(step));
         }
       }
-      fields[i].emplace(donors[i].name(), g.target_space, std::move(coefficients),
-                        donors[i].components());
-      std::vector<detail::Limited> limited;
-      for (std::size_t c = 0; bounds && c < own; ++c) {
-        const int component = static_cast<int>(c);
+    }
+    std::vector<const Field*> before, after;
+    std::vector<detail::Limited> limited;
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      const Field& given = donors[members[m]];
+      std::optional<Field>& field = fields[members[m]];
+      field.emplace(given.name(), g.target_space, std::move(parted[m]), given.components());
+      const std::size_t first = limited.size();
+      for (int c = 0; bounds && c < given.components(); ++c) {
         if (!continuous.empty()) {
-          limited.push_back(std::move(continuous[k].limited[first + c]));
+          limited.push_back(std::move(continuous[k].limited[limited.size()]));
         } else {
-          limited.push_back(detail::limit_discontinuous(*fields[i], component,
-                                                        (*bounds)(donors[i], component),
+          limited.push_back(detail::limit_discontinuous(*field, c, (*bounds)(given, c),
                                                         target.element_area, options.threads));
         }
       }
-      if (bounds) fields[i].emplace(detail::with_coefficients(*fields[i], limited));
-      std::vector<double> element_defect(own, swept.max_mass_defect);
-      for (std::size_t c = 0; !continuous.empty() && c < own; ++c)
-        element_defect[c] = continuous[k].max_element_change[first + c];
-      const auto lines =
-          reports.add(i, donors[i], *fields[i], std::span(outside).subspan(c0 + first, own),
-                      std::span(swept.made).subspan(c0 + first, own), spread_mass, element_defect);
-      for (std::size_t c = 0; c < own; ++c) {
-        FieldReport& line = lines[c];
-        line.max_spread_change = spread_change[c];
-        if (!continuous.empty()) line.mass_solve = continuous[k].solve[first + c];
+      if (bounds)
+        field.emplace(detail::with_coefficients(*field, std::span(limited).subspan(first)));
+      before.push_back(&given);
+      after.push_back(&*field);
+    }
+    const std::vector<double> element_defect = continuous.empty()
+                                                   ? std::vector<double>(nc, swept.max_mass_defect)
+                                                   : continuous[k].max_element_change;
+    reports.add(members,
+                {before, after, std::span(outside).subspan(c0, nc),
+                 std::span(swept.made).subspan(c0, nc), spread_mass, element_defect, g.donor_mass});
+    std::size_t place = 0;
+    for (const std::size_t i : members) {
+      for (FieldReport& line : reports.lines(i)) {
+        line.max_spread_change = spread_change[place];
+        if (!continuous.empty()) line.mass_solve = continuous[k].solve[place];
         if (bounds) {
           // Both enclose the values; the limiter's is the sharper one at the bounds.
-          line.min_after = limited[c].range.lo;
-          line.max_after = limited[c].range.hi;
-          line.bounds = limited[c].report;
+          line.min_after = limited[place].range.lo;
+          line.max_after = limited[place].range.hi;
+          line.bounds = limited[place].report;
         }
+        ++place;
       }
-      first += own;
     }
     c0 += nc;
   }
   report.fields = reports.finish();
   for (std::optional<Field>& field : fields) transferred.fields.push_back(std::move(*field));
+  report.seconds.prepare = prepared;
+  report.seconds.report = seconds_since(swept_at) - solve_seconds;
   report.seconds.total = seconds_since(start);
   return transferred;
 }

@@ -115,8 +115,10 @@ struct TransferReport {
   std::vector<std::pair<ElementId, double>>
       uncovered_elements;  ///< and their uncovered areas, above 1e-10 of the element
   struct Seconds {
-    double total = 0;                              ///< wall time
-    double overlay = 0, integrate = 0, solve = 0;  ///< summed over the threads
+    double total = 0;    ///< wall time
+    double prepare = 0;  ///< of it, laying out meshes and fields (0 where another transfer did)
+    double report = 0;   ///< of it, making the fields, their masses and ranges
+    double overlay = 0, integrate = 0, solve = 0;  ///< the rest, summed over the threads
   } seconds;
 };
 

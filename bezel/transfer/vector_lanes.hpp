@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "bezel/transfer/lanes.hpp"
+#include "bezel/numeric/lanes.hpp"
 #include "hwy/highway.h"
 
 // load() is always inlined: how a vector is returned does not matter.
@@ -209,7 +209,7 @@ HWY_INLINE Lanes mul_add(double a, const Lanes& b, const Lanes& c) {
 }
 
 HWY_INLINE double sum_of(const Lanes& x) {
-  return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
+  return sum_of_lanes(x);
 }
 
 }  // namespace bezel::detail::HWY_NAMESPACE

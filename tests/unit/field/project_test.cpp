@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -195,12 +196,38 @@ TEST(SampleAndProject, SameBitsForAnyNumberOfThreads) {
   }
 }
 
+// Elements of one degree share a matrix; beside one of another degree each has its own.
+TEST(Project, StraightElementsTogetherAreThoseAlone) {
+  const MeshPtr mesh = field_test::straight(6, 3);
+  const auto f = formulas({"exp(x)*sin(5*y)", "x^2-y"});
+  for (const Basis basis : {Basis::reference, Basis::physical}) {
+    for (const int d : {0, 1, 4, Space::max_degree}) {
+      std::vector<int> degrees(mesh->element_count(), d);
+      degrees.back() = d == 0 ? 1 : d - 1;
+      const Field together = project("f", Space::discontinuous(mesh, d, basis), f, 6, 3),
+                  alone = project("f", Space::discontinuous(mesh, degrees, basis), f);
+      for (std::size_t e = 0; e + 1 < degrees.size(); ++e) {
+        const auto a = together.coefficients(ElementId(e)), b = alone.coefficients(ElementId(e));
+        for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 4e-15 * std::ldexp(1.0, d));
+      }
+      const Field one = project("f", Space::discontinuous(mesh, d, basis), f, 6, 1);
+      EXPECT_TRUE(std::ranges::equal(one.coefficients(), together.coefficients()));
+    }
+  }
+}
+
 TEST(SampleAndProject, Errors) {
   const auto space = Space::discontinuous(field_test::straight(1), 1);
   const auto f = formulas({"log(x)"});
   const std::string sampled = message_of([&] { sample("f", space, f); });
   EXPECT_EQ(sampled,
             "triangle 0: formula 'log(x)' is nan at x = -1, y = -1, expected a finite value");
+  // Many straight elements at once: the one at fault is named, here the first above the middle.
+  const auto above = formulas({"log(0.1 - y)"});
+  EXPECT_EQ(message_of([&] {
+              (void)project("f", Space::discontinuous(field_test::straight(2), 1), above);
+            }).substr(0, 39),
+            "triangle 4: formula 'log(0.1 - y)' is n");
   EXPECT_EQ(message_of([&] { sample("f", nullptr, f); }),
             "a field needs a space, found a null pointer");
   EXPECT_EQ(message_of([&] { project("f", space, {}); }), "found 0 formulas, expected 1..9");

@@ -16,7 +16,7 @@ TEST(Group, HoldsTheComponentsOfItsFields) {
   const Field a = project("velocity", space, velocity);
   const Field b = project("one", space, {&one, 1});
   const std::vector<const Field*> fields = {&a, &b};
-  const Group group(overlay, overlay, fields, space);
+  const Group group(overlay, overlay, fields, space, 1);
   EXPECT_EQ(group.components, 3);
   EXPECT_TRUE(group.donor_mapped);
   EXPECT_EQ(group.donor_scaled(0).size(), 9U);
