@@ -19,6 +19,7 @@
 #include <thread>
 
 #include "bezel/transfer/message.hpp"
+#include "bezel/transfer/operator_by.hpp"
 #include "bezel/transfer/share.hpp"
 #endif
 
@@ -150,7 +151,25 @@ struct Processes::Impl {
                                          const detail::OverlayMesh& target,
                                          const detail::FrontSearch& search,
                                          std::span<detail::Group> groups,
-                                         const TransferOptions& options, const Progress& progress);
+                                         const TransferOptions& options, const Progress& progress,
+                                         const detail::VisitBlocks& visit);
+  detail::Sweeper sweeper() {
+    return [this](const detail::OverlayMesh& donor, const detail::OverlayMesh& target,
+                  const detail::FrontSearch& search, std::span<detail::Group> groups,
+                  const TransferOptions& options, const Progress& progress,
+                  const detail::VisitBlocks& visit) {
+      return sweep(donor, target, search, groups, options, progress, visit);
+    };
+  }
+  /// Calls work(), and notes what it took besides the share of rank 0.
+  template <class Work>
+  auto measured(const Work& work) {
+    const detail::Stopwatch watch;
+    const double own = shares[0].cpu_seconds;
+    auto result = work();
+    alone += watch.cpu_seconds() - (shares[0].cpu_seconds - own);
+    return result;
+  }
 };
 
 Processes::Processes() : impl_(std::make_unique<Impl>()) {
@@ -164,6 +183,7 @@ Processes::Processes() : impl_(std::make_unique<Impl>()) {
   }
   MPI_Comm_rank(MPI_COMM_WORLD, &impl_->rank);
   MPI_Comm_size(MPI_COMM_WORLD, &impl_->size);
+  impl_->shares.resize(static_cast<std::size_t>(impl_->size));
 }
 
 Processes::~Processes() {
@@ -202,21 +222,19 @@ void Processes::serve(int threads) {
   impl_->served = true;
 }
 
-std::vector<detail::ChunkResult> Processes::Impl::sweep(const detail::OverlayMesh& donor,
-                                                        const detail::OverlayMesh& target,
-                                                        const detail::FrontSearch& search,
-                                                        std::span<detail::Group> groups,
-                                                        const TransferOptions& options,
-                                                        const Progress& progress) {
+std::vector<detail::ChunkResult> Processes::Impl::sweep(
+    const detail::OverlayMesh& donor, const detail::OverlayMesh& target,
+    const detail::FrontSearch& search, std::span<detail::Group> groups,
+    const TransferOptions& options, const Progress& progress, const detail::VisitBlocks& visit) {
   const auto count = static_cast<std::size_t>(size);
   const std::vector<detail::Share> split =
       detail::split_work(donor, target, search, count, options.threads);
-  // A transfer may sweep more than once: what is measured adds up.
   for (std::size_t r = 1; r < count; ++r) {
     if (split[r].own.empty()) continue;
     detail::MessageWriter out;
     out.value(Order::work);
-    detail::write_share(split[r], donor, target, search, groups, options, out);
+    detail::write_share(split[r], donor, target, search, groups, options, static_cast<bool>(visit),
+                        out);
     const Bytes bytes = out.take();
     shares[r].bytes_in += static_cast<std::int64_t>(bytes.size());
     send(static_cast<int>(r), bytes);
@@ -229,8 +247,8 @@ std::vector<detail::ChunkResult> Processes::Impl::sweep(const detail::OverlayMes
   try {
     const detail::Share& own = split[0];
     const detail::Stopwatch watch;
-    std::vector<detail::ChunkResult> here =
-        detail::sweep_elements(donor, target, search, groups, own.own, own_options, progress);
+    std::vector<detail::ChunkResult> here = detail::sweep_elements(
+        donor, target, search, groups, own.own, own_options, progress, visit);
     ShareReport& report = shares[0];
     report.targets += static_cast<std::int64_t>(own.own.size());
     report.donors += static_cast<std::int64_t>(own.donors.size());
@@ -252,7 +270,7 @@ std::vector<detail::ChunkResult> Processes::Impl::sweep(const detail::OverlayMes
       const auto report = in.value<ShareReport>();
       const Bytes results = in.list<std::byte>();
       detail::MessageReader reader(results);
-      detail::read_results(split[r], reader, groups, chunks);
+      detail::read_results(split[r], reader, groups, chunks, visit);
       ShareReport& sum = shares[r];
       sum.targets += report.targets;
       sum.donors += report.donors;
@@ -276,16 +294,19 @@ TransferResult Processes::transfer(std::span<const Field> donors,
     throw InputError(
         "transfer: PETSc solves mass systems in one process only, expected another mass method");
   }
-  impl_->shares.assign(static_cast<std::size_t>(impl_->size), {});
-  const auto sweep = [&](const detail::OverlayMesh& from, const detail::OverlayMesh& to,
-                         const detail::FrontSearch& search, std::span<detail::Group> groups,
-                         const TransferOptions& how, const Progress& done) {
-    return impl_->sweep(from, to, search, groups, how, done);
-  };
-  const detail::Stopwatch watch;
-  TransferResult result = detail::transfer_by(sweep, donors, target, options, progress);
-  impl_->alone = watch.cpu_seconds() - impl_->shares[0].cpu_seconds;
-  return result;
+  return impl_->measured(
+      [&] { return detail::transfer_by(impl_->sweeper(), donors, target, options, progress); });
+}
+
+TransferOperator Processes::transfer_operator(std::shared_ptr<const Space> donor,
+                                              std::shared_ptr<const TriangleMesh> target,
+                                              const TransferOptions& options,
+                                              const Progress& progress) {
+  if (impl_->rank != 0) throw InputError("transfer: rank 0 makes operators, the others serve it");
+  return impl_->measured([&] {
+    return detail::OperatorBy::make(impl_->sweeper(), std::move(donor), std::move(target), options,
+                                    progress);
+  });
 }
 
 #else
@@ -312,6 +333,12 @@ void Processes::serve(int) {}
 TransferResult Processes::transfer(std::span<const Field>, std::shared_ptr<const TriangleMesh>,
                                    const TransferOptions&, const Progress&) {
   return {};
+}
+TransferOperator Processes::transfer_operator(std::shared_ptr<const Space> donor,
+                                              std::shared_ptr<const TriangleMesh> target,
+                                              const TransferOptions& options,
+                                              const Progress& progress) {
+  return {std::move(donor), std::move(target), options, progress};
 }
 const std::vector<ShareReport>& Processes::shares() const {
   return impl_->shares;

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "bezel/transfer/transfer.hpp"
+#include "bezel/transfer/operator.hpp"
 
 namespace bezel {
 
@@ -21,7 +21,7 @@ struct Launch {
 /// starts nothing, and works in builds without MPI.
 Launch launch();
 
-/// What one process did for a transfer.
+/// What one process did for transfers.
 struct ShareReport {
   std::int64_t targets = 0;    ///< target elements it worked on
   std::int64_t donors = 0;     ///< donor elements it was sent (rank 0: that it would have been)
@@ -76,9 +76,18 @@ class Processes {
   TransferResult transfer(std::span<const Field> donors, std::shared_ptr<const TriangleMesh> target,
                           const TransferOptions& options = {}, const Progress& progress = {});
 
-  /// On rank 0: what each rank did for the last transfer.
+  /// On rank 0: a TransferOperator, with the work on the target elements shared in the same way.
+  /// The operator is rank 0's; applying it takes no other process.
+  /// @throws as the constructor of TransferOperator; InputError on another rank
+  TransferOperator transfer_operator(std::shared_ptr<const Space> donor,
+                                     std::shared_ptr<const TriangleMesh> target,
+                                     const TransferOptions& options = {},
+                                     const Progress& progress = {});
+
+  /// On rank 0: what each rank did so far.
   const std::vector<ShareReport>& shares() const;
-  /// On rank 0: processor time of the last transfer besides its share: what it did alone.
+  /// On rank 0: processor time of transfers and operators so far, besides its shares: what it did
+  /// alone.
   double alone_cpu_seconds() const;
 
  private:

@@ -54,19 +54,13 @@ MeshPart read_mesh(MessageReader& in) {
 
 void write_group(const Share& share, const Group& g, MessageWriter& out) {
   const Space& donor = *g.donor_space;
-  const auto nc = static_cast<std::size_t>(g.components);
   std::vector<int> degrees;
   std::vector<Frame> frames;
-  std::vector<double> scaled;
-  std::vector<double> mass;
   for (const std::int32_t d : share.donors) {
     degrees.push_back(donor.degree(ElementId(d)));
     if (donor.basis() == Basis::physical) frames.push_back(donor.frame(ElementId(d)));
-    const auto own = g.donor_scaled(d);
-    scaled.insert(scaled.end(), own.begin(), own.end());
-    const double* own_mass = g.donor_mass.data() + place(d) * nc;
-    mass.insert(mass.end(), own_mass, own_mass + nc);
   }
+  out.value(g.of_basis());
   out.value(g.components);
   out.value(g.donor_degree);
   out.value(donor.basis());
@@ -74,11 +68,23 @@ void write_group(const Share& share, const Group& g, MessageWriter& out) {
   out.list(frames);
   out.value(g.target_space->basis());
   out.value(g.target_space->uniform_degree());
+  if (g.of_basis()) return;
+  const auto nc = static_cast<std::size_t>(g.components);
+  std::vector<double> scaled;
+  std::vector<double> mass;
+  for (const std::int32_t d : share.donors) {
+    const auto own = g.donor_scaled(d);
+    scaled.insert(scaled.end(), own.begin(), own.end());
+    const double* own_mass = g.donor_mass.data() + place(d) * nc;
+    mass.insert(mass.end(), own_mass, own_mass + nc);
+  }
   out.list(scaled);
   out.list(mass);
 }
 
-Group read_group(const OverlayMesh& donor, const OverlayMesh& target, MessageReader& in) {
+Group read_group(const OverlayMesh& donor, const OverlayMesh& target, int threads,
+                 MessageReader& in) {
+  const bool of_basis = in.value<bool>();
   const int components = in.value<int>();
   const auto donor_degree = in.value<DonorDegree>();
   const auto basis = in.value<Basis>();
@@ -90,26 +96,33 @@ Group read_group(const OverlayMesh& donor, const OverlayMesh& target, MessageRea
                          ? Space::discontinuous(donor.mesh, std::move(degrees), std::move(frames))
                          : Space::discontinuous(donor.mesh, std::move(degrees), basis);
   auto target_space = Space::discontinuous(target.mesh, target_degree, target_basis);
+  if (of_basis) {
+    return Group(donor, target, std::move(donor_space), std::move(target_space), donor_degree,
+                 threads);
+  }
   std::vector<double> scaled = in.list<double>();
   std::vector<double> mass = in.list<double>();
   return Group(donor, target, std::move(donor_space), std::move(target_space), components,
                donor_degree, std::move(scaled), std::move(mass));
 }
 
+/// Elements of a part by their numbers in the whole.
+void write_numbers(const OverlayMesh& mesh, std::span<const std::int32_t> elements,
+                   MessageWriter& out) {
+  std::vector<std::int32_t> of_whole;
+  for (const std::int32_t e : elements) of_whole.push_back(mesh.number_of(e));
+  out.list(of_whole);
+}
+
 void write_chunk(const ChunkResult& chunk, const OverlayMesh& donor, const OverlayMesh& target,
                  MessageWriter& out) {
-  const auto numbers = [&](const OverlayMesh& mesh, std::span<const std::int32_t> elements) {
-    std::vector<std::int32_t> of_whole;
-    for (const std::int32_t e : elements) of_whole.push_back(mesh.number_of(e));
-    out.list(of_whole);
-  };
-  numbers(donor, chunk.given.donor);
-  numbers(target, chunk.given.target);
+  write_numbers(donor, chunk.given.donor, out);
+  write_numbers(target, chunk.given.target, out);
   out.list(chunk.given.area);
   out.list(chunk.given.mass);
   out.value(chunk.counts);
   out.list(chunk.made);
-  numbers(target, chunk.element_made.element);
+  write_numbers(target, chunk.element_made.element, out);
   out.list(chunk.element_made.mass);
   std::vector<std::int32_t> uncovered;
   std::vector<double> uncovered_area;
@@ -117,7 +130,7 @@ void write_chunk(const ChunkResult& chunk, const OverlayMesh& donor, const Overl
     uncovered.push_back(element.value);
     uncovered_area.push_back(area);
   }
-  numbers(target, uncovered);
+  write_numbers(target, uncovered, out);
   out.list(uncovered_area);
   for (const double x : {chunk.uncovered_area, chunk.max_partition_residual, chunk.max_joint_gap,
                          chunk.max_mass_defect, chunk.overlay, chunk.integrate, chunk.solve})
@@ -148,6 +161,25 @@ ChunkResult read_chunk(MessageReader& in) {
   return chunk;
 }
 
+/// All but the products, which only the solve needs.
+void write_blocks(const ElementBlocks& blocks, const OverlayMesh& donor, MessageWriter& out) {
+  out.value(static_cast<std::uint64_t>(blocks.columns));
+  write_numbers(donor, blocks.donor, out);
+  out.list(blocks.mass);
+  out.list(blocks.value);
+  write_numbers(donor, blocks.made_donor, out);
+  out.list(blocks.made);
+}
+
+void read_blocks(MessageReader& in, ElementBlocks& blocks) {
+  blocks.reset(static_cast<std::size_t>(in.value<std::uint64_t>()));
+  blocks.donor = in.list<std::int32_t>();
+  blocks.mass = in.list<double>();
+  blocks.value = in.list<double>();
+  blocks.made_donor = in.list<std::int32_t>();
+  blocks.made = in.list<double>();
+}
+
 double clock_seconds(clockid_t clock) {
   timespec now{};
   clock_gettime(clock, &now);
@@ -168,7 +200,8 @@ double Stopwatch::cpu_seconds() const {
 
 void write_share(const Share& share, const OverlayMesh& donor, const OverlayMesh& target,
                  const FrontSearch& search, std::span<const Group> groups,
-                 const TransferOptions& options, MessageWriter& out) {
+                 const TransferOptions& options, bool blocks, MessageWriter& out) {
+  out.value(blocks);
   out.value(options.uncovered);
   out.value(options.conserve);
   write_mesh(*donor.mesh, share.donors, out);
@@ -185,6 +218,7 @@ ShareReport work_on(MessageReader& in, int threads, MessageWriter& out) {
   const Stopwatch watch;
   TransferOptions options;
   options.threads = threads;
+  const bool with_blocks = in.value<bool>();
   options.uncovered = in.value<Uncovered>();
   options.conserve = in.value<Conserve>();
   MeshPart donor_part = read_mesh(in);
@@ -200,18 +234,28 @@ ShareReport work_on(MessageReader& in, int threads, MessageWriter& out) {
   donor.numbers = std::move(donor_part.numbers);
   OverlayMesh target(std::move(target_part.mesh), "target", threads);
   target.numbers = std::move(target_part.numbers);
-  for (std::uint64_t i = 0; i < group_count; ++i) groups.push_back(read_group(donor, target, in));
+  for (std::uint64_t i = 0; i < group_count; ++i)
+    groups.push_back(read_group(donor, target, threads, in));
   const FrontSearch search(donor, connected);
+  // One writer per chunk: a chunk is one task's.
+  std::vector<MessageWriter> blocks(with_blocks ? (own.size() + chunk_size - 1) / chunk_size : 0);
+  VisitBlocks visit;
+  if (with_blocks) {
+    visit = [&](std::size_t index, std::int32_t, const ElementBlocks& of_element) {
+      write_blocks(of_element, donor, blocks[index / chunk_size]);
+    };
+  }
   const std::vector<ChunkResult> chunks =
-      sweep_elements(donor, target, search, groups, own, options, {});
+      sweep_elements(donor, target, search, groups, own, options, {}, visit);
   for (const ChunkResult& chunk : chunks) {
     work.pairs += chunk.counts.pairs;
     write_chunk(chunk, donor, target, out);
   }
-  for (Group& g : groups) {
+  for (MessageWriter& of_chunk : blocks) out.list(of_chunk.take());
+  for (std::size_t i = 0; i < groups.size() && !with_blocks; ++i) {
     std::vector<double> coefficients;
     for (const std::int32_t t : own) {
-      const auto of_element = g.target_out(t);
+      const auto of_element = groups[i].target_out(t);
       coefficients.insert(coefficients.end(), of_element.begin(), of_element.end());
     }
     out.list(coefficients);
@@ -222,9 +266,22 @@ ShareReport work_on(MessageReader& in, int threads, MessageWriter& out) {
 }
 
 void read_results(const Share& share, MessageReader& in, std::span<Group> groups,
-                  std::span<ChunkResult> chunks) {
+                  std::span<ChunkResult> chunks, const VisitBlocks& visit) {
   for (std::size_t c = 0; c < share.chunk_count; ++c)
     chunks[share.first_chunk + c] = read_chunk(in);
+  if (visit) {
+    ElementBlocks blocks;
+    for (std::size_t c = 0; c < share.chunk_count; ++c) {
+      const std::vector<std::byte> bytes = in.list<std::byte>();
+      MessageReader of_chunk(bytes);
+      const std::size_t end = std::min(share.own.size(), (c + 1) * chunk_size);
+      for (std::size_t i = c * chunk_size; i < end; ++i) {
+        read_blocks(of_chunk, blocks);
+        visit(share.first_chunk * chunk_size + i, share.own[i], blocks);
+      }
+    }
+    return;
+  }
   for (Group& g : groups) {
     const std::vector<double> coefficients = in.list<double>();
     auto from = coefficients.begin();

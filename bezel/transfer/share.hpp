@@ -42,9 +42,10 @@ std::vector<Share> split_work(const OverlayMesh& donor, const OverlayMesh& targe
                               const FrontSearch& search, std::size_t count, int threads);
 
 /// Writes all that a process needs to work on a share.
+/// @param blocks  whether the blocks of the elements are wanted
 void write_share(const Share& share, const OverlayMesh& donor, const OverlayMesh& target,
                  const FrontSearch& search, std::span<const Group> groups,
-                 const TransferOptions& options, MessageWriter& out);
+                 const TransferOptions& options, bool blocks, MessageWriter& out);
 
 /// Wall and processor time (of all threads) since it was made.
 class Stopwatch {
@@ -57,13 +58,15 @@ class Stopwatch {
   double wall_start_, cpu_start_;
 };
 
-/// Reads a share, works on it, and writes chunks and coefficients with the whole's numbers.
+/// Reads a share, works on it, and writes chunks and coefficients (or blocks) with the whole's
+/// numbers.
 /// @return all but the bytes
 /// @throws as sweep_elements()
 ShareReport work_on(MessageReader& in, int threads, MessageWriter& out);
 
-/// Puts the chunks where they belong among all, and the coefficients into the groups.
+/// Puts the chunks where they belong among all, and the coefficients into the groups or, with
+/// `visit`, the blocks there.
 void read_results(const Share& share, MessageReader& in, std::span<Group> groups,
-                  std::span<ChunkResult> chunks);
+                  std::span<ChunkResult> chunks, const VisitBlocks& visit = {});
 
 }  // namespace bezel::detail

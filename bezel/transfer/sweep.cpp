@@ -211,12 +211,12 @@ Swept balance(std::span<const ChunkResult> chunks, std::span<const double> donor
   return swept;
 }
 
-Swept sweep(const OverlayMesh& donor, const OverlayMesh& target, std::span<Group> groups,
-            const TransferOptions& options, const Progress& progress, const VisitBlocks& visit) {
-  const FrontSearch search(donor);
-  const std::vector<ChunkResult> chunks = sweep_elements(
-      donor, target, search, groups, target.spatial_order(), options, progress, visit);
-  return balance(chunks, donor.element_area, component_count(groups), options.uncovered);
+std::vector<ChunkResult> sweep_here(const OverlayMesh& donor, const OverlayMesh& target,
+                                    const FrontSearch& search, std::span<Group> groups,
+                                    const TransferOptions& options, const Progress& progress,
+                                    const VisitBlocks& visit) {
+  return sweep_elements(donor, target, search, groups, target.spatial_order(), options, progress,
+                        visit);
 }
 
 std::size_t component_count(std::span<const Group> groups) {

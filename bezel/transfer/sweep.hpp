@@ -68,17 +68,18 @@ struct Swept {
 Swept balance(std::span<const ChunkResult> chunks, std::span<const double> donor_area,
               std::size_t components, Uncovered policy);
 
-/// sweep_elements() over all target elements, and their balance.
-/// @throws UncoveredError, NumericsError as transfer()
-Swept sweep(const OverlayMesh& donor, const OverlayMesh& target, std::span<Group> groups,
-            const TransferOptions& options, const Progress& progress,
-            const VisitBlocks& visit = {});
-
 /// Works on all target elements: what sweep_elements() does with OverlayMesh::spatial_order(), here
 /// or elsewhere.
 using Sweeper = std::function<std::vector<ChunkResult>(
     const OverlayMesh& donor, const OverlayMesh& target, const FrontSearch& search,
-    std::span<Group> groups, const TransferOptions& options, const Progress& progress)>;
+    std::span<Group> groups, const TransferOptions& options, const Progress& progress,
+    const VisitBlocks& visit)>;
+
+/// The Sweeper of this process.
+std::vector<ChunkResult> sweep_here(const OverlayMesh& donor, const OverlayMesh& target,
+                                    const FrontSearch& search, std::span<Group> groups,
+                                    const TransferOptions& options, const Progress& progress,
+                                    const VisitBlocks& visit = {});
 
 /// transfer() with the target elements worked on by `sweeper`.
 TransferResult transfer_by(const Sweeper& sweeper, std::span<const Field> donors,

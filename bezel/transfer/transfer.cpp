@@ -148,12 +148,7 @@ void check_arguments(std::span<const Field> donors,
 
 TransferResult transfer(std::span<const Field> donors, std::shared_ptr<const TriangleMesh> target,
                         const TransferOptions& options, const Progress& progress) {
-  const auto here = [](const detail::OverlayMesh& from, const detail::OverlayMesh& to,
-                       const detail::FrontSearch& search, std::span<detail::Group> groups,
-                       const TransferOptions& how, const Progress& done) {
-    return detail::sweep_elements(from, to, search, groups, to.spatial_order(), how, done);
-  };
-  return detail::transfer_by(here, donors, target, options, progress);
+  return detail::transfer_by(detail::sweep_here, donors, target, options, progress);
 }
 
 TransferResult detail::transfer_by(const Sweeper& sweeper, std::span<const Field> donors,
@@ -168,7 +163,7 @@ TransferResult detail::transfer_by(const Sweeper& sweeper, std::span<const Field
   Plan plan = make_plan(donors, target_mesh, donor, target, options);
   const detail::FrontSearch search(donor);
   const std::vector<detail::ChunkResult> chunks =
-      sweeper(donor, target, search, plan.groups, options, progress);
+      sweeper(donor, target, search, plan.groups, options, progress, {});
   detail::Swept swept = detail::balance(chunks, donor.element_area,
                                         detail::component_count(plan.groups), options.uncovered);
   const std::size_t components = swept.made.size();
@@ -307,7 +302,7 @@ std::vector<OverlapArea> overlap_areas(std::shared_ptr<const TriangleMesh> donor
   options.threads = threads;
   std::vector<OverlapArea> all;
   for (const detail::ChunkResult& chunk :
-       detail::sweep_elements(donor, target, search, {}, target.spatial_order(), options, {})) {
+       detail::sweep_here(donor, target, search, {}, options, {})) {
     if (chunk.inconsistent >= 0) {
       throw NumericsError("the common refinement is inconsistent at target triangle " +
                           std::to_string(chunk.inconsistent));
