@@ -291,8 +291,6 @@ int run(const TransferCommand& options, const Context& context) {
   check_usage(options);
   const TransferOptions how_to = transfer_options(options, context);
   const bool series = is_collection(options.donor) || is_collection(options.out);
-  if (launch().size > 1 && options.mass_method == "petsc")
-    throw UsageError("--mass-method petsc: in one process only");
   const std::unique_ptr<Processes> processes = join_processes();
   if (processes && processes->rank() > 0) {
     // Several processes with all threads each would be in each other's way.

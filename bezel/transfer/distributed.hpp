@@ -68,9 +68,10 @@ class Processes {
   /// Fields and report have the same bits (but for the seconds, whose parts are summed over the
   /// processes). With options.threads = 0 rank 0 works on its share with one thread, as the others
   /// do by default, and on what it does alone with all that it may use.
+  /// MassMethod::petsc solves with its rows spread over all processes: the result is that of one
+  /// process up to rounding, and the same bits only for the same number of processes.
   /// @throws as bezel::transfer(), also for what went wrong elsewhere (what a single process would
-  ///         have met first); InputError on another rank, or for MassMethod::petsc, which works in
-  ///         one process only
+  ///         have met first); InputError on another rank
   /// @limits rank 0 holds both meshes, all fields and all pairs. What it does alone grows with the
   ///         meshes: docs/methods/transfer-parallel.md
   TransferResult transfer(std::span<const Field> donors, std::shared_ptr<const TriangleMesh> target,

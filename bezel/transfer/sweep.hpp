@@ -12,6 +12,7 @@
 #include "bezel/transfer/conserve.hpp"
 #include "bezel/transfer/element_transfer.hpp"
 #include "bezel/transfer/group.hpp"
+#include "bezel/transfer/mass_system.hpp"
 #include "bezel/transfer/overlay_mesh.hpp"
 #include "bezel/transfer/transfer.hpp"
 
@@ -81,8 +82,14 @@ std::vector<ChunkResult> sweep_here(const OverlayMesh& donor, const OverlayMesh&
                                     const TransferOptions& options, const Progress& progress,
                                     const VisitBlocks& visit = {});
 
-/// transfer() with the target elements worked on by `sweeper`.
-TransferResult transfer_by(const Sweeper& sweeper, std::span<const Field> donors,
+/// Who does what can be left to others: this process alone, unless told otherwise.
+struct Crew {
+  Sweeper sweep = sweep_here;
+  MassSystemMaker mass_system = {};  ///< of MassMethod::petsc; see ContinuousMass
+};
+
+/// transfer() by a crew.
+TransferResult transfer_by(const Crew& crew, std::span<const Field> donors,
                            const std::shared_ptr<const TriangleMesh>& target,
                            const TransferOptions& options, const Progress& progress);
 

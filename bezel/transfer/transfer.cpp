@@ -148,22 +148,22 @@ void check_arguments(std::span<const Field> donors,
 
 TransferResult transfer(std::span<const Field> donors, std::shared_ptr<const TriangleMesh> target,
                         const TransferOptions& options, const Progress& progress) {
-  return detail::transfer_by(detail::sweep_here, donors, target, options, progress);
+  return detail::transfer_by({}, donors, target, options, progress);
 }
 
-TransferResult detail::transfer_by(const Sweeper& sweeper, std::span<const Field> donors,
+TransferResult detail::transfer_by(const Crew& crew, std::span<const Field> donors,
                                    const std::shared_ptr<const TriangleMesh>& target_mesh,
                                    const TransferOptions& options, const Progress& progress) {
   const auto start = clock::now();
   check_arguments(donors, target_mesh, options);
   if (options.weight || !options.density.empty())
-    return detail::transfer_weighted(sweeper, donors, target_mesh, options, progress);
+    return detail::transfer_weighted(crew, donors, target_mesh, options, progress);
   const detail::OverlayMesh donor(donors.front().space().mesh(), "donor", options.threads);
   const detail::OverlayMesh target(target_mesh, "target", options.threads);
   Plan plan = make_plan(donors, target_mesh, donor, target, options);
   const detail::FrontSearch search(donor);
   const std::vector<detail::ChunkResult> chunks =
-      sweeper(donor, target, search, plan.groups, options, progress, {});
+      crew.sweep(donor, target, search, plan.groups, options, progress, {});
   detail::Swept swept = detail::balance(chunks, donor.element_area,
                                         detail::component_count(plan.groups), options.uncovered);
   const std::size_t components = swept.made.size();
@@ -218,7 +218,8 @@ TransferResult detail::transfer_by(const Sweeper& sweeper, std::span<const Field
       };
     }
     const auto solve_start = clock::now();
-    continuous = detail::make_continuous(plan.groups, donor, target, search, options, limits);
+    continuous = detail::make_continuous(plan.groups, donor, target, search, options,
+                                         crew.mass_system, limits);
     report.seconds.solve += seconds_since(solve_start);
   }
 

@@ -53,10 +53,10 @@ class Folder:
     def __init__(self, path, mpiexec, flag, bezel):
         self.path, self.mpiexec, self.flag, self.bezel = path, mpiexec, flag, bezel
 
-    def run(self, words, processes=None):
+    def run(self, words, processes=None, environment=None):
         launcher = [] if processes is None else [self.mpiexec, self.flag, str(processes)]
         return subprocess.run(launcher + [self.bezel] + words.split(), cwd=self.path, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=250)
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=250, env=environment)
 
     def must(self, words, processes=None):
         done = self.run(words, processes)
@@ -147,6 +147,55 @@ def series(folder):
             expect(without_times(one) == without_times(many), f"{options}, {n} processes: another report")
 
 
+def largest_difference(folder, a, b):
+    """Of the coefficients of two fields on one mesh, relative to the largest."""
+    one, two = folder.bytes_of(a).decode().split(), folder.bytes_of(b).decode().split()
+    start = one.index("coefficients") if "coefficients" in one else one.index("field")
+    expect(one[:start] == two[:start] and len(one) == len(two), f"{a} and {b} lie on other meshes")
+    number = lambda word: float.fromhex(word) if word.startswith(("0x", "-0x")) else 0.0
+    values = [(number(v), number(w)) for v, w in zip(one[start:], two[start:])]
+    largest = max(abs(v) for v, _ in values)
+    expect(largest > 0.5, f"{a}: no coefficients")
+    return max(abs(v - w) for v, w in values) / largest
+
+
+def petsc(folder):
+    """The mass system with its rows spread over the processes: to 1e-13 the field of one process."""
+    for command in ("mesh rectangle --width 2 --height 2 --center 1,0 --size 0.1 --degree 2 -o square.bzl",
+                    "sample square.bzl -f u=sin(3*x)+y^2 --degree 2 -o donor.bzl",
+                    "mesh disc --radius 0.9 --center 1,0 --size 0.05 --degree 2 --seed 2 -o target.bzl"):
+        folder.must(command)
+    for options in ("", "--degree 3 --keep-boundary", "--weight x", "--bounds -9,9"):
+        words = f"transfer donor.bzl target.bzl --continuity cg {options}"
+        folder.must(f"{words} -o one.bzl")
+        folder.must(f"{words} --mass-method petsc -o petsc.bzl")
+        for n in PROCESSES:
+            folder.must(f"{words} --mass-method petsc -o many.bzl --report many.json", n)
+            for other in ("one.bzl", "petsc.bzl"):
+                difference = largest_difference(folder, other, "many.bzl")
+                expect(difference <= 1e-13, f"{options}, {n} processes: {difference} from {other}")
+            if n == 1:
+                expect(folder.bytes_of("petsc.bzl") == folder.bytes_of("many.bzl"), "one process: other bytes")
+            report = folder.json_of("many.json")
+            check_shares(report, n, report["pairs"])
+            solve = report["fields"][0]["mass_solve"]
+            expect(solve["method"] == "petsc" and solve["iterations"] > 0 and solve["relative_residual"] <= 1e-14,
+                   f"{options}, {n} processes: {solve}")
+    # What PETSc refuses, it refuses on all processes.
+    before = sorted(os.listdir(folder.path))
+    for wrong in ("-bezel_mass_pc_type none_such", "-bezel_mass_ksp_type none_such"):
+        environment = dict(os.environ, PETSC_OPTIONS=wrong)
+        words = "transfer donor.bzl target.bzl --continuity cg --mass-method petsc -o none.bzl"
+        one = folder.run(words, environment=environment)
+        many = folder.run(words, 3, environment)
+        ours = [line for line in many.stderr.splitlines() if line.startswith("error: ")]
+        expect(one.returncode == 4 and many.returncode == 4, f"{wrong}: exit {one.returncode}, {many.returncode}")
+        expect(len(ours) == 1 and ours[0][:40] == one.stderr[:40], f"{wrong}: {many.stderr} instead of {one.stderr}")
+        expect(sorted(os.listdir(folder.path)) == before, f"{wrong}: left files")
+    many = folder.run(words, 3, dict(os.environ, PETSC_OPTIONS="-bezel_mass_pc_type icc"))  # for one process only
+    expect(many.returncode == 4 and many.stderr.count("error: PETSc failed to solve") == 1, f"icc: {many.stderr}")
+
+
 def tiny_last_triangle(path):
     """A quadratic mesh whose last triangle along the curve is too small for the numbers of its mass matrix."""
     n = 20
@@ -212,7 +261,7 @@ def main():
             if name in CASES:
                 compare(folder, *CASES[name])
             else:
-                {"matrix": matrix, "series": series, "errors": errors}[name](folder)
+                {"matrix": matrix, "series": series, "petsc": petsc, "errors": errors}[name](folder)
         except Failure as failure:
             sys.exit(f"{name}: {failure}")
 

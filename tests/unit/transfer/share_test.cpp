@@ -80,7 +80,7 @@ void expect_same(const TransferResult& a, const TransferResult& b) {
 void check(std::span<const Field> donors, const MeshPtr& target, const TransferOptions& options,
            std::size_t count = 3) {
   const TransferResult whole = transfer(donors, target, options);
-  expect_same(transfer_by(in_shares(count), donors, target, options, {}), whole);
+  expect_same(transfer_by({in_shares(count)}, donors, target, options, {}), whole);
 }
 
 MeshPtr turned(const MeshPtr& mesh, double angle, double scale, const Vec2& to) {
@@ -298,7 +298,7 @@ TEST(Share, ErrorsNameElementsOfTheWhole) {
   };
   const std::string whole = message([&] { transfer({&f, 1}, target, {}); });
   EXPECT_NE(whole.find(std::to_string(grid->element_count())), std::string::npos) << whole;
-  EXPECT_EQ(message([&] { transfer_by(in_shares(3), {&f, 1}, target, {}, {}); }), whole);
+  EXPECT_EQ(message([&] { transfer_by({in_shares(3)}, {&f, 1}, target, {}, {}); }), whole);
 }
 
 TEST(Message, GivesBackWhatWasWritten) {
