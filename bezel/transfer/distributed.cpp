@@ -182,12 +182,12 @@ std::vector<detail::ChunkResult> Processes::Impl::sweep(
   const auto count = static_cast<std::size_t>(size);
   const std::vector<detail::Share> split =
       detail::split_work(donor, target, search, count, options.threads);
+  detail::ShareWriter writer(donor, target, search, groups, options, static_cast<bool>(visit));
   for (std::size_t r = 1; r < count; ++r) {
     if (split[r].own.empty()) continue;
     detail::MessageWriter out;
     out.value(Order::work);
-    detail::write_share(split[r], donor, target, search, groups, options, static_cast<bool>(visit),
-                        out);
+    writer.write(split[r], out);
     const Bytes bytes = out.take();
     shares[r].bytes_in += static_cast<std::int64_t>(bytes.size());
     send(static_cast<int>(r), bytes);

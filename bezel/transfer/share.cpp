@@ -12,23 +12,34 @@ std::size_t place(std::int32_t e) {
   return static_cast<std::size_t>(e);
 }
 
-/// Where a number is in an ascending list that holds it.
-std::int32_t place_in(std::span<const std::int32_t> ascending, std::int32_t number) {
-  return static_cast<std::int32_t>(std::lower_bound(ascending.begin(), ascending.end(), number) -
-                                   ascending.begin());
+/// Notes the places of the numbers of a list.
+void note_places(std::span<const std::int32_t> numbers, std::span<std::int32_t> places) {
+  std::int32_t next = 0;
+  for (const std::int32_t n : numbers) places[place(n)] = next++;
+}
+void forget_places(std::span<const std::int32_t> numbers, std::span<std::int32_t> places) {
+  for (const std::int32_t n : numbers) places[place(n)] = -1;
 }
 
+/// @param places  of the nodes, all -1 before and after
 void write_mesh(const TriangleMesh& mesh, std::span<const std::int32_t> elements,
-                MessageWriter& out) {
+                std::span<std::int32_t> places, MessageWriter& out) {
   std::vector<std::int32_t> connectivity;
+  std::vector<std::int32_t> nodes;
   for (const std::int32_t e : elements) {
-    for (const NodeId n : mesh.nodes(ElementId(e))) connectivity.push_back(n.value);
+    for (const NodeId n : mesh.nodes(ElementId(e))) {
+      connectivity.push_back(n.value);
+      if (places[n.index()] >= 0) continue;
+      places[n.index()] = 0;
+      nodes.push_back(n.value);
+    }
   }
-  std::vector<std::int32_t> nodes = connectivity;
   std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  for (std::int32_t& n : connectivity) n = place_in(nodes, n);
+  note_places(nodes, places);
+  for (std::int32_t& n : connectivity) n = places[place(n)];
+  forget_places(nodes, places);
   std::vector<Vec2> control;
+  control.reserve(nodes.size());
   for (const std::int32_t n : nodes) control.push_back(mesh.control(NodeId(n)));
   out.value(mesh.degree());
   out.list(control);
@@ -198,20 +209,33 @@ double Stopwatch::cpu_seconds() const {
   return clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu_start_;
 }
 
-void write_share(const Share& share, const OverlayMesh& donor, const OverlayMesh& target,
-                 const FrontSearch& search, std::span<const Group> groups,
-                 const TransferOptions& options, bool blocks, MessageWriter& out) {
-  out.value(blocks);
-  out.value(options.uncovered);
-  out.value(options.conserve);
-  write_mesh(*donor.mesh, share.donors, out);
-  out.value(search.connected());
-  write_mesh(*target.mesh, share.targets, out);
+ShareWriter::ShareWriter(const OverlayMesh& donor, const OverlayMesh& target,
+                         const FrontSearch& search, std::span<const Group> groups,
+                         const TransferOptions& options, bool blocks)
+    : donor_(donor),
+      target_(target),
+      search_(search),
+      groups_(groups),
+      options_(options),
+      blocks_(blocks),
+      donor_place_(donor.mesh->node_count(), -1),
+      target_place_(target.mesh->node_count(), -1),
+      element_place_(target.element_count(), -1) {}
+
+void ShareWriter::write(const Share& share, MessageWriter& out) {
+  out.value(blocks_);
+  out.value(options_.uncovered);
+  out.value(options_.conserve);
+  write_mesh(*donor_.mesh, share.donors, donor_place_, out);
+  out.value(search_.connected());
+  write_mesh(*target_.mesh, share.targets, target_place_, out);
+  note_places(share.targets, element_place_);
   std::vector<std::int32_t> own;
-  for (const std::int32_t t : share.own) own.push_back(place_in(share.targets, t));
+  for (const std::int32_t t : share.own) own.push_back(element_place_[place(t)]);
+  forget_places(share.targets, element_place_);
   out.list(own);
-  out.value(static_cast<std::uint64_t>(groups.size()));
-  for (const Group& g : groups) write_group(share, g, out);
+  out.value(static_cast<std::uint64_t>(groups_.size()));
+  for (const Group& g : groups_) write_group(share, g, out);
 }
 
 ShareReport work_on(MessageReader& in, int threads, MessageWriter& out) {

@@ -15,6 +15,14 @@ namespace {
 constexpr double widening = 1e-6;
 /// Work of a target element besides its pairs, in candidates for pairs.
 constexpr double work_of_target = 1.0;
+/// Target elements whose donors the tree is asked for together, unless they lie far apart: their
+/// box is then this many times as large as their own boxes together.
+constexpr std::size_t area_size = 16;
+constexpr double far_apart = 1.5;
+/// Those whose donors are sought among these together.
+constexpr std::size_t group_size = 8;
+/// Pieces of the list of chunks for threads, each with a mark per donor element.
+constexpr std::size_t tasks = 16;
 
 Box2 widened(const Box2& box, double by) {
   double magnitude = 0.0;
@@ -31,28 +39,145 @@ double nearest_corner(const OverlayMesh& mesh, std::span<const std::int32_t> ele
                       const Vec2& p) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const std::int32_t e : elements) {
-    for (const Vec2& corner : mesh.corners(e)) nearest = std::min(nearest, norm(corner - p));
+    for (const Vec2& corner : mesh.corners(e)) {
+      const Vec2 away = corner - p;
+      nearest = std::min(nearest, dot(away, away));
+    }
   }
-  return nearest;
+  return std::sqrt(nearest);
 }
 
-void make_unique(std::vector<std::int32_t>& numbers) {
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-}
+/// Collects element numbers, each once per list.
+class Marks {
+ public:
+  explicit Marks(std::size_t elements) : mark_(elements, 0) {}
+  void begin_list() { ++now_; }
+  /// Whether e was not in the list so far.
+  bool take(std::int32_t e) {
+    std::uint32_t& mark = mark_[static_cast<std::size_t>(e)];
+    if (mark == now_) return false;
+    mark = now_;
+    return true;
+  }
+
+ private:
+  std::vector<std::uint32_t> mark_;
+  std::uint32_t now_ = 0;
+};
+
+/// The donor elements that may matter to target elements, and the work to be expected.
+class Needs {
+ public:
+  Needs(const OverlayMesh& donor, const OverlayMesh& target, const FrontSearch& search)
+      : donor_(donor), target_(target), search_(search), marks_(donor.element_count()) {}
+
+  void begin_list() { marks_.begin_list(); }
+  /// Adds to the list those of some elements that are not in it; returns the work.
+  double add(std::span<const std::int32_t> elements, std::vector<std::int32_t>& list) {
+    const std::size_t n = elements.size();
+    const Box2 box = box_of(elements);
+    if (n > area_size || (n > 1 && are_far_apart(elements, box)))
+      return add(elements.first(n / 2), list) + add(elements.subspan(n / 2), list);
+    search_.query(widened(box, 0.0), {}, memory_, near_);
+    if (near_.empty()) near_.push_back(search_.nearest(box.centre()));
+    search_.query(widened(box, reach(box, near_)), {}, memory_, area_);
+    double work = 0.0;
+    for (std::size_t i = 0; i < n; i += group_size)
+      work += add_group(elements.subspan(i, std::min(group_size, n - i)), list);
+    return work;
+  }
+
+ private:
+  const Box2& box_of(std::int32_t t) const {
+    return target_.element_box[static_cast<std::size_t>(t)];
+  }
+  Box2 box_of(std::span<const std::int32_t> elements) const {
+    Box2 box;
+    for (const std::int32_t t : elements) box.include(box_of(t));
+    return box;
+  }
+  bool are_far_apart(std::span<const std::int32_t> elements, const Box2& box) const {
+    const auto area = [](const Box2& b) { return (b.hi[0] - b.lo[0]) * (b.hi[1] - b.lo[1]); };
+    double own = 0.0;
+    for (const std::int32_t t : elements) own += area(box_of(t));
+    return area(box) > far_apart * own;
+  }
+  /// Those of some donors whose boxes meet a box; without branches, which few could foresee.
+  void select(std::span<const std::int32_t> donors, const Box2& box,
+              std::vector<std::int32_t>& out) const {
+    out.resize(donors.size());
+    std::size_t count = 0;
+    for (const std::int32_t d : donors) {
+      const Box2& own = donor_.element_box[static_cast<std::size_t>(d)];
+      out[count] = d;
+      count += static_cast<std::size_t>(
+          static_cast<int>(own.lo[0] <= box.hi[0]) & static_cast<int>(box.lo[0] <= own.hi[0]) &
+          static_cast<int>(own.lo[1] <= box.hi[1]) & static_cast<int>(box.lo[1] <= own.hi[1]));
+    }
+    out.resize(count);
+  }
+  /// No point of the box is farther than this from the nearest of some donors.
+  double reach(const Box2& box, std::span<const std::int32_t> donors) const {
+    const double r = nearest_corner(donor_, donors, box.centre()) + 0.5 * box.diameter();
+    return r * (1.0 + widening);
+  }
+
+  /// The donors that may matter are in area_.
+  double add_group(std::span<const std::int32_t> elements, std::vector<std::int32_t>& list) {
+    const Box2 box = box_of(elements);
+    select(area_, widened(box, 0.0), near_);
+    const double work =
+        static_cast<double>(elements.size()) * work_of_target + expected_pairs(elements, box);
+    select(area_, widened(box, reach(box, near_.empty() ? area_ : near_)), found_);
+    for (const std::int32_t d : found_)
+      if (marks_.take(d)) list.push_back(d);
+    return work;
+  }
+
+  /// How many donor boxes the elements' boxes meet, when those that meet the box of all, near_, lie
+  /// about evenly and are of one size: as many as there are centres in a box that is larger by it.
+  double expected_pairs(std::span<const std::int32_t> elements, const Box2& box) const {
+    const auto count = static_cast<double>(near_.size());
+    if (near_.empty()) return 0.0;
+    Vec2 size;
+    for (const std::int32_t d : near_) {
+      const Box2& own = donor_.element_box[static_cast<std::size_t>(d)];
+      size += (own.hi - own.lo) * (1.0 / count);
+    }
+    const auto room = [&](const Box2& b) {
+      const Vec2 sum = b.hi - b.lo + size;
+      return sum[0] * sum[1];
+    };
+    double part = 0.0;
+    for (const std::int32_t t : elements) part += room(box_of(t));
+    const double expected = count * part / room(box);
+    // Also where products of sizes are out of range, and their quotient is no number.
+    const double most = count * static_cast<double>(elements.size());
+    return expected <= most ? expected : most;
+  }
+
+  const OverlayMesh& donor_;
+  const OverlayMesh& target_;
+  const FrontSearch& search_;
+  Marks marks_;
+  FrontSearch::Memory memory_;
+  std::vector<std::int32_t> near_, area_, found_;
+};
 
 /// The elements and those beyond their edges, ascending.
 std::vector<std::int32_t> with_neighbours(const OverlayMesh& mesh,
-                                          std::vector<std::int32_t> elements) {
-  const std::size_t own = elements.size();
-  for (std::size_t i = 0; i < own; ++i) {
-    for (const SideEdge& side : mesh.element_edges[static_cast<std::size_t>(elements[i])]) {
-      const std::int32_t other = mesh.across(elements[i], side.edge.value);
-      if (other != exterior) elements.push_back(other);
+                                          std::span<const std::int32_t> own, Marks& marks) {
+  marks.begin_list();
+  std::vector<std::int32_t> all;
+  for (const std::int32_t e : own) {
+    if (marks.take(e)) all.push_back(e);
+    for (const SideEdge& side : mesh.element_edges[static_cast<std::size_t>(e)]) {
+      const std::int32_t other = mesh.across(e, side.edge.value);
+      if (other != exterior && marks.take(other)) all.push_back(other);
     }
   }
-  make_unique(elements);
-  return elements;
+  std::ranges::sort(all);
+  return all;
 }
 
 }  // namespace
@@ -61,32 +186,31 @@ std::vector<Share> split_work(const OverlayMesh& donor, const OverlayMesh& targe
                               const FrontSearch& search, std::size_t count, int threads) {
   const std::vector<std::int32_t> order = target.spatial_order();
   const std::size_t chunks = (order.size() + chunk_size - 1) / chunk_size;
-  std::vector<std::vector<std::int32_t>> met(chunks);
+  const auto range = [&](std::size_t first, std::size_t end) {
+    const std::size_t from = std::min(order.size(), first * chunk_size);
+    return std::span(order).subspan(from, std::min(order.size(), end * chunk_size) - from);
+  };
+  std::vector<std::vector<std::int32_t>> needed(chunks);
   std::vector<double> work(chunks, 0.0);
   parallel_for(
-      chunks,
-      [&](std::size_t chunk) {
-        FrontSearch::Memory memory;
-        std::vector<std::int32_t> found;
-        std::vector<std::int32_t>& all = met[chunk];
-        const std::size_t end = std::min(order.size(), (chunk + 1) * chunk_size);
-        for (std::size_t i = chunk * chunk_size; i < end; ++i) {
-          const Box2& box = target.element_box[static_cast<std::size_t>(order[i])];
-          const Vec2 centre = box.centre();
-          search.query(widened(box, 0.0), {}, memory, found);
-          work[chunk] += work_of_target + static_cast<double>(found.size());
-          if (found.empty()) found.push_back(search.nearest(centre));
-          const double reach = nearest_corner(donor, found, centre) + 0.5 * box.diameter();
-          search.query(widened(box, reach * (1.0 + widening)), {}, memory, found);
-          all.insert(all.end(), found.begin(), found.end());
+      tasks,
+      [&](std::size_t task) {
+        const std::size_t end = chunks * (task + 1) / tasks;
+        std::size_t chunk = chunks * task / tasks;
+        if (chunk == end) return;
+        Needs needs(donor, target, search);
+        for (; chunk < end; ++chunk) {
+          needs.begin_list();
+          work[chunk] = needs.add(range(chunk, chunk + 1), needed[chunk]);
         }
-        make_unique(all);
       },
       threads);
 
   double total = 0.0;
   for (const double w : work) total += w;
   std::vector<Share> shares(count);
+  Marks donor_marks(donor.element_count());
+  Marks target_marks(target.element_count());
   double done = 0.0;
   std::size_t next = 0;
   for (std::size_t s = 0; s < count; ++s) {
@@ -97,15 +221,15 @@ std::vector<Share> split_work(const OverlayMesh& donor, const OverlayMesh& targe
     while (next < chunks && (s + 1 == count || done + 0.5 * work[next] <= until))
       done += work[next++];
     share.chunk_count = next - share.first_chunk;
-    const auto at = [&](std::size_t chunk) {
-      return order.begin() +
-             static_cast<std::ptrdiff_t>(std::min(order.size(), chunk * chunk_size));
-    };
-    share.own.assign(at(share.first_chunk), at(next));
-    share.targets = with_neighbours(target, share.own);
-    for (std::size_t c = share.first_chunk; c < next; ++c)
-      share.donors.insert(share.donors.end(), met[c].begin(), met[c].end());
-    make_unique(share.donors);
+    const auto own = range(share.first_chunk, next);
+    share.own.assign(own.begin(), own.end());
+    share.targets = with_neighbours(target, share.own, target_marks);
+    donor_marks.begin_list();
+    for (std::size_t c = share.first_chunk; c < next; ++c) {
+      for (const std::int32_t d : needed[c])
+        if (donor_marks.take(d)) share.donors.push_back(d);
+    }
+    std::ranges::sort(share.donors);
   }
   return shares;
 }

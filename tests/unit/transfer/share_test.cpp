@@ -23,10 +23,11 @@ Sweeper in_shares(std::size_t count) {
                  const VisitBlocks& visit) {
     const std::vector<Share> shares = split_work(donor, target, search, count, 1);
     std::vector<ChunkResult> chunks(shares.back().first_chunk + shares.back().chunk_count);
+    ShareWriter writer(donor, target, search, groups, options, static_cast<bool>(visit));
     for (const Share& share : shares) {
       if (share.own.empty()) continue;
       MessageWriter order;
-      write_share(share, donor, target, search, groups, options, static_cast<bool>(visit), order);
+      writer.write(share, order);
       const auto bytes = order.take();
       MessageReader in(bytes);
       MessageWriter answer;
