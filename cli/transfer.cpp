@@ -312,9 +312,11 @@ int run(const TransferCommand& options, const Context& context) {
   if (!options.report.empty()) require_writable(options.report);
   if (!options.matrix.empty()) require_writable(options.matrix);
 
-  const Dataset donor = read_noting(context, options.donor);
+  const std::vector<Dataset> data =
+      read_all_noting(context, std::array{options.donor, options.target});
+  const Dataset& donor = data[0];
+  const Dataset& target = data[1];
   const std::vector<Field> fields = chosen_fields(donor, options.donor, options.fields);
-  const Dataset target = read_noting(context, options.target);
 
   TransferResult result;
   std::optional<TransferOperator> matrix;
