@@ -152,7 +152,8 @@ class Work {
       if (!why.empty()) throw InputError(why);
       out.doubtful = out.doubtful || status != CurveStatus::ok;
     }
-    if (o_.tolerance || o_.pieces) {
+    const bool in_pieces = o_.tolerance || o_.pieces;
+    if (in_pieces) {
       double worst = 0.0;
       for (const CurvePiece<dim>& piece : pieces)
         worst = std::max(worst, piece.interpolant.errors.distance_max);
@@ -161,10 +162,11 @@ class Work {
       out.text = fmt::format("{}: {}, largest distance {:.3g}\n", spec.name,
                              counted(pieces.size(), "piece"), worst);
     }
-    for (const CurvePiece<dim>& piece : pieces) {
-      Json one = to_json(piece, own);
-      out.text += to_text(piece, own, pieces.size() > 1 || o_.pieces ? "" : spec.name + ": ");
-      if (o_.tolerance || o_.pieces) {
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      Json one = to_json(pieces[i], own);
+      out.text +=
+          to_text(pieces[i], own, in_pieces ? fmt::format("\npiece {}: ", i) : spec.name + ": ");
+      if (in_pieces) {
         out.json["pieces"].push_back(std::move(one));
       } else {
         out.json.update(one);

@@ -77,6 +77,19 @@ Comparison compare(const ExactValues& exact, const Coefficients& b, const std::v
   return c;
 }
 
+const std::vector<StudyColumn> comparison_columns = {
+    {"values rounded to nearest", "nearest"},
+    {"wrongly 0", "zeros"},
+    {"wrong sign", "wrong_sign"},
+    {"largest relative error", "largest_relative_error"},
+    {"largest share of the bound", "share"}};
+
+void append_comparison(StudyRow& row, const Comparison& c) {
+  row.cells.insert(row.cells.end(),
+                   {count_cell(c.nearest), count_cell(c.zero), count_cell(c.wrong_sign),
+                    number_cell(c.worst), number_cell(c.largest_share)});
+}
+
 std::string method_name(int K) {
   return K == 1 ? "de Casteljau" : fmt::format("compensated, K = {}", K);
 }
@@ -126,10 +139,10 @@ void figure_5_1(StudyReport& report) {
   row("Horner", horner, horner_bound);
   row("de Casteljau", casteljau, casteljau_bound);
   report.add(std::move(table));
-  PlotOptions options;
-  options.title = "Figure 5.1: (2s-1)^3 near its root, by Horner and by de Casteljau";
-  options.x_label = "s - 1/2";
-  options.y_label = "computed p(s)";
+  const PlotOptions options{
+      .title = "Figure 5.1: (2s-1)^3 near its root, by Horner and by de Casteljau",
+      .x_label = "s - 1/2",
+      .y_label = "computed p(s)"};
   const std::vector<double> x = offsets(s, 0.5);
   report.add_plot("figure_5_1.svg", {{"Horner", x, horner}, {"de Casteljau", x, casteljau}},
                   options);
@@ -216,11 +229,11 @@ void figure_5_7(StudyReport& report) {
       line.colour = "#555555";
       if (!line.x.empty()) series.push_back(std::move(line));
     }
-    PlotOptions options;
-    options.title = title;
-    options.x_label = "condition number cond(p, s)";
-    options.y_label = "relative error (drawn within 1e-17 and 1)";
-    options.log_x = options.log_y = true;
+    const PlotOptions options{.title = title,
+                              .x_label = "condition number cond(p, s)",
+                              .y_label = "relative error (drawn within 1e-17 and 1)",
+                              .log_x = true,
+                              .log_y = true};
     report.add_plot(file, std::move(series), options);
   };
   draw("figure_5_2.svg", "Figure 5.2: evaluation of (s-1)(s-3/4)^7, K = 1 and 2", 2);
@@ -239,13 +252,8 @@ void figure_5_4(StudyReport& report) {
   table.remark =
       "K = 2 starts to lose accuracy. Expected: theorem 5.2 allows the full precision only below "
       "cond = 1/u^(K-1), and an error of at most the bound.";
-  table.columns = {{"method", "method"},
-                   {"points with cond < 1/u^(K-1)", "points_allowed", true},
-                   {"values rounded to nearest", "nearest"},
-                   {"wrongly 0", "zeros"},
-                   {"wrong sign", "wrong_sign"},
-                   {"largest relative error", "largest_relative_error"},
-                   {"largest share of the bound", "share"}};
+  table.columns = {{"method", "method"}, {"points with cond < 1/u^(K-1)", "points_allowed", true}};
+  table.columns.insert(table.columns.end(), comparison_columns.begin(), comparison_columns.end());
   std::vector<std::vector<double>> y;
   for (int K = 1; K <= 4; ++K) {
     y.push_back(values(triple_root_quartic, s, K));
@@ -253,15 +261,14 @@ void figure_5_4(StudyReport& report) {
     std::size_t allowed = 0;
     for (const double x : s)
       if (exact.condition(x) < std::ldexp(1.0, 53 * (K - 1))) ++allowed;
-    table.rows.push_back(
-        {{text_cell(method_name(K)), count_cell(allowed), count_cell(c.nearest), count_cell(c.zero),
-          count_cell(c.wrong_sign), number_cell(c.worst), number_cell(c.largest_share)}});
+    StudyRow row{{text_cell(method_name(K)), count_cell(allowed)}};
+    append_comparison(row, c);
+    table.rows.push_back(std::move(row));
   }
   report.add(std::move(table));
-  PlotOptions options;
-  options.title = "Figure 5.4: (2s-1)^3 (s-1) near its root, K = 2 and 3";
-  options.x_label = "s - 1/2";
-  options.y_label = "computed p(s)";
+  const PlotOptions options{.title = "Figure 5.4: (2s-1)^3 (s-1) near its root, K = 2 and 3",
+                            .x_label = "s - 1/2",
+                            .y_label = "computed p(s)"};
   const std::vector<double> x = offsets(s, 0.5);
   report.add_plot("figure_5_4.svg", {{"K = 2", x, y[1]}, {"K = 3", x, y[2]}}, options);
 }
@@ -375,15 +382,11 @@ void figure_5_6(StudyReport& report) {
       "The paper adds the levels with SumK and says that a plain sum gives the same results. "
       "Counted "
       "here: at how many points the two differ, and how many of those SumK rounds to nearest.";
-  table.columns = {{"method", "method"},
-                   {"values rounded to nearest", "nearest"},
-                   {"wrongly 0", "zeros"},
-                   {"wrong sign", "wrong_sign"},
-                   {"largest relative error", "largest_relative_error"},
-                   {"largest share of the bound", "share"},
-                   {"plain sum differs", "plain_sum_differs"},
-                   {"paper", "plain_sum_differs_paper", true},
-                   {"SumK right there", "sum_k_right"}};
+  table.columns = {{"method", "method"}};
+  table.columns.insert(table.columns.end(), comparison_columns.begin(), comparison_columns.end());
+  table.columns.insert(table.columns.end(), {{"plain sum differs", "plain_sum_differs"},
+                                             {"paper", "plain_sum_differs_paper", true},
+                                             {"SumK right there", "sum_k_right"}});
   std::vector<std::vector<double>> y;
   std::vector<double> truth;
   for (const double x : s) truth.push_back(exact.value(x).to_double());
@@ -399,19 +402,18 @@ void figure_5_6(StudyReport& report) {
       ++differs;
       if (careful == truth[i]) ++right;
     }
-    table.rows.push_back(
-        {{text_cell(method_name(K)), count_cell(c.nearest), count_cell(c.zero),
-          count_cell(c.wrong_sign), number_cell(c.worst), number_cell(c.largest_share),
-          count_cell(differs), count_cell(0), count_cell(right)}});
+    StudyRow row{{text_cell(method_name(K))}};
+    append_comparison(row, c);
+    row.cells.insert(row.cells.end(), {count_cell(differs), count_cell(0), count_cell(right)});
+    table.rows.push_back(std::move(row));
   }
   report.add(std::move(table));
   const std::vector<double> x = offsets(s, 0.75);
   for (std::size_t k = 0; k < 3; ++k) {
-    PlotOptions options;
-    options.title = fmt::format("Figure 5.6: (s-1)(s-3/4)^7 near its root, {}",
-                                method_name(static_cast<int>(k) + 1));
-    options.x_label = "s - 3/4";
-    options.y_label = "computed p(s)";
+    const PlotOptions options{.title = fmt::format("Figure 5.6: (s-1)(s-3/4)^7 near its root, {}",
+                                                   method_name(static_cast<int>(k) + 1)),
+                              .x_label = "s - 3/4",
+                              .y_label = "computed p(s)"};
     report.add_plot(
         fmt::format("figure_5_6_k{}.svg", k + 1),
         {{fmt::format("K = {}", k + 1), x, y[k], false, k < 2}, {"exact", x, truth, true}},
@@ -479,15 +481,14 @@ void flop_counts(StudyReport& report) {
       const double library = bernstein::evaluate_compensated<double>(b, s, K);
       const bernstein::FlopCount said = bernstein::compensated_flops(n, K);
       const auto at = static_cast<std::size_t>(K - 2);
-      const auto cell = [](int count) { return count_cell(static_cast<std::size_t>(count)); };
-      table.rows.push_back(
-          {{cell(n), cell(K), cell(fused.flops), cell(per_update[at] * T + once[at]),
-            cell(dekker.flops), cell((15 * K * K + 11 * K - 34) * T + 6 * K * K - 11 * K + 11),
-            cell(fused.two_prods), cell((3 * K - 4) * T),
-            yes_cell(said.fused == fused.flops && said.dekker == dekker.flops &&
-                     said.two_prods == fused.two_prods),
-            yes_cell(fused_value == library && dekker_value == library)},
-           n == 1 || n == 3 || n == 8 || n == 30});
+      table.rows.push_back({{count_cell(n), count_cell(K), count_cell(fused.flops),
+                             count_cell(per_update[at] * T + once[at]), count_cell(dekker.flops),
+                             count_cell((15 * K * K + 11 * K - 34) * T + 6 * K * K - 11 * K + 11),
+                             count_cell(fused.two_prods), count_cell((3 * K - 4) * T),
+                             yes_cell(said.fused == fused.flops && said.dekker == dekker.flops &&
+                                      said.two_prods == fused.two_prods),
+                             yes_cell(fused_value == library && dekker_value == library)},
+                            n == 1 || n == 3 || n == 8 || n == 30});
     }
   }
   report.add(std::move(table));
@@ -542,10 +543,9 @@ void multipliers(StudyReport& report) {
           share = std::max(
               share, beyond.to_double() / (std::ldexp(m, -53 * K) * exact.absolute_sum(s[i])));
       }
-      table.rows.push_back(
-          {{count_cell(static_cast<std::size_t>(n)), count_cell(static_cast<std::size_t>(K)),
-            exact_cell(m), exact_cell(printed), yes_cell(m == printed), number_cell(share)},
-           n == 2 || n == 5 || n == 8 || n == 20 || n == 60});
+      table.rows.push_back({{count_cell(n), count_cell(K), exact_cell(m), exact_cell(printed),
+                             yes_cell(m == printed), number_cell(share)},
+                            n == 2 || n == 5 || n == 8 || n == 20 || n == 60});
     }
   }
   report.add(std::move(table));

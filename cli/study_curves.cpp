@@ -94,7 +94,7 @@ void error_table(StudyReport& report, std::size_t k, const Found& found) {
   const CurveReference& reference = curve_reference(k);
   for (std::size_t i = 0; i < found[0].size(); ++i) {
     const int n = first_degree + static_cast<int>(i);
-    StudyRow row{{count_cell(static_cast<std::size_t>(n))}, in_markdown(n)};
+    StudyRow row{{count_cell(n)}, in_markdown(n)};
     for (const auto& list : found) row.cells.push_back(measured(list[i], list[i].errors.l2));
     for (std::size_t m = 0; m < with_reference; ++m)
       row.cells.push_back(number_cell(reference.l2[m][i]));
@@ -125,8 +125,7 @@ void distance_table(StudyReport& report, std::size_t k, const Found& found) {
     const CurveInterpolant<2>& b = found[best][i];
     const double expected = curve_reference(k).distance[i];
     table.rows.push_back(
-        {{count_cell(static_cast<std::size_t>(n)),
-          measured(found[2][i], found[2][i].errors.distance_l2),
+        {{count_cell(n), measured(found[2][i], found[2][i].errors.distance_l2),
           measured(found[equal_tangent][i], found[equal_tangent][i].errors.distance_l2),
           number_cell(b.errors.distance_l2), number_cell(b.errors.distance_max),
           number_cell(b.errors.arc_length), text_cell(std::string(name(b.nodes.kind))),
@@ -138,35 +137,28 @@ void distance_table(StudyReport& report, std::size_t k, const Found& found) {
 
 PlotOptions plot_options(const std::string& title, const std::string& x, const std::string& y,
                          bool logarithmic) {
-  PlotOptions options;
-  options.title = title;
-  options.x_label = x;
-  options.y_label = y;
-  options.log_y = logarithmic;
-  return options;
+  return {.title = title, .x_label = x, .y_label = y, .log_y = logarithmic};
 }
 
 void error_plot(StudyReport& report, std::size_t k, const Found& found, int figure,
                 bool of_length) {
   std::vector<Series> series;
-  const auto clamped = [](double e) { return std::max(e, shown_floor); };
   for (std::size_t m = 0; m <= best; ++m) {
     Series line{methods[m].second, {}, {}};
     for (std::size_t i = 0; i < found[m].size(); ++i) {
       if (found[m][i].nodal.empty()) continue;
-      line.x.push_back(first_degree + static_cast<double>(i));
       const CurveErrors& e = found[m][i].errors;
-      line.y.push_back(clamped(of_length ? e.arc_length : e.l2));
+      add_point(line, first_degree + static_cast<double>(i), of_length ? e.arc_length : e.l2,
+                shown_floor);
     }
     if (!line.x.empty()) series.push_back(std::move(line));
   }
   if (!of_length) {
     Series theirs{"equal tangent, prototype", {}, {}, true};
     theirs.colour = "#777777";
-    for (std::size_t i = 0; i < found[0].size(); ++i) {
-      theirs.x.push_back(first_degree + static_cast<double>(i));
-      theirs.y.push_back(clamped(curve_reference(k).l2[equal_tangent][i]));
-    }
+    for (std::size_t i = 0; i < found[0].size(); ++i)
+      add_point(theirs, first_degree + static_cast<double>(i),
+                curve_reference(k).l2[equal_tangent][i], shown_floor);
     series.push_back(std::move(theirs));
   }
   report.add_plot(fmt::format("figure_{}{}.svg", figure, of_length ? "_length" : ""),
@@ -381,8 +373,7 @@ void work_table(StudyReport& report, const CurveInterpolator& interpolator) {
       const CurveNodes found = interpolator.place(curve, n, CurveMethod::equal_tangent);
       const double goal = k > 2 ? NAN : n == 10 ? 20.0 : n == 15 ? 60.0 : NAN;
       table.rows.push_back(
-          {{count_cell(k + 1), count_cell(static_cast<std::size_t>(n)),
-            count_cell(static_cast<std::size_t>(found.newton_iterations)),
+          {{count_cell(k + 1), count_cell(n), count_cell(found.newton_iterations),
             number_cell(microseconds(interpolator, curve, n, CurveMethod::equal_tangent)),
             number_cell(microseconds(interpolator, curve, n, CurveMethod::best)),
             count_cell(theirs), number_cell(goal), number_cell(k > 2 ? 1e4 : 1e3)}});

@@ -86,26 +86,23 @@ void add_aerofoil_meshes(StudyReport& report, bool quick) {
       }
       equal.name = fmt::format("equal parameter, {} edges", edges);
       best.name = fmt::format("best, {} edges", edges);
-      for (Series* line : {&equal, &best}) {
-        line->x.push_back(g);
-        line->y.push_back(std::max(distance[line == &equal ? 0 : 2], 1e-17));
-      }
+      add_point(equal, g, distance[0], 1e-17);
+      add_point(best, g, distance[2], 1e-17);
       table.rows.push_back(
-          {{count_cell(edges), count_cell(straight.element_count()),
-            count_cell(static_cast<std::size_t>(g)), number_cell(distance[0]),
-            number_cell(distance[1]), number_cell(distance[2]),
+          {{count_cell(edges), count_cell(straight.element_count()), count_cell(g),
+            number_cell(distance[0]), number_cell(distance[1]), number_cell(distance[2]),
             number_cell(distance[0] / distance[2]), number_cell(largest), number_cell(area_error),
-            count_cell(static_cast<std::size_t>(relaxation)), count_cell(invalid)}});
+            count_cell(relaxation), count_cell(invalid)}});
     }
     series.push_back(std::move(equal));
     series.push_back(std::move(best));
   }
   report.add(std::move(table));
-  PlotOptions options;
-  options.title = "Meshes around NACA 0012: distance of curved edges to the boundary";
-  options.x_label = "degree";
-  options.y_label = "L2 norm of the distance";
-  options.log_y = true;
+  const PlotOptions options{
+      .title = "Meshes around NACA 0012: distance of curved edges to the boundary",
+      .x_label = "degree",
+      .y_label = "L2 norm of the distance",
+      .log_y = true};
   report.add_plot("aerofoil.svg", std::move(series), options);
 }
 

@@ -101,10 +101,10 @@ StudyTable error_table(int number, const DomainCase& domain, const std::vector<i
         expected = domain_reference(number, degrees[d], static_cast<int>(m));
       constexpr double none = std::numeric_limits<double>::quiet_NaN();
       table.rows.push_back(
-          {{count_cell(static_cast<std::size_t>(degrees[d])), text_cell(words(methods[m])),
-            number_cell(r.area_error), number_cell(expected ? expected->area : none),
-            number_cell(r.energy_error), number_cell(expected ? expected->energy : none),
-            number_cell(r.jacobian.min), number_cell(r.jacobian.max)},
+          {{count_cell(degrees[d]), text_cell(words(methods[m])), number_cell(r.area_error),
+            number_cell(expected ? expected->area : none), number_cell(r.energy_error),
+            number_cell(expected ? expected->energy : none), number_cell(r.jacobian.min),
+            number_cell(r.jacobian.max)},
            degrees[d] % 6 == 0 || degrees[d] == 4});
     }
   return table;
@@ -114,31 +114,28 @@ StudyTable error_table(int number, const DomainCase& domain, const std::vector<i
 void add_error_plot(StudyReport& report, int figure, int number, bool energy,
                     const std::vector<int>& degrees, const DomainResults& results) {
   std::vector<Series> series;
-  const auto add = [&](Series& line, int degree, double value) {
-    if (!std::isfinite(value)) return;
-    line.x.push_back(degree);
-    line.y.push_back(std::max(value, 1e-16));
-  };
+  constexpr double lowest = 1e-16;
   for (std::size_t m = 0; m < methods.size(); ++m) {
     if (methods[m] == CurveMethod::orthogonal_distance) continue;  // best, but for a few degrees
     Series line{words(methods[m]), {}, {}};
     for (std::size_t d = 0; d < degrees.size(); ++d)
-      add(line, degrees[d], energy ? results[d][m].energy_error : results[d][m].area_error);
+      add_point(line, degrees[d], energy ? results[d][m].energy_error : results[d][m].area_error,
+                lowest);
     series.push_back(std::move(line));
   }
   Series prototype{"equal tangent, prototype", {}, {}, true};
   prototype.colour = "#555555";
   for (const int degree : degrees) {
     const DomainErrors e = domain_reference(number, degree, static_cast<int>(equal_tangent));
-    add(prototype, degree, energy ? e.energy : e.area);
+    add_point(prototype, degree, energy ? e.energy : e.area, lowest);
   }
   series.push_back(std::move(prototype));
-  PlotOptions options;
-  options.title = fmt::format("Domain {}: error of {}", number,
-                              energy ? "the solution in the energy norm" : "the area");
-  options.x_label = "degree N";
-  options.y_label = energy ? "energy error" : "area error (drawn from 1e-16)";
-  options.log_y = true;
+  const PlotOptions options{
+      .title = fmt::format("Domain {}: error of {}", number,
+                           energy ? "the solution in the energy norm" : "the area"),
+      .x_label = "degree N",
+      .y_label = energy ? "energy error" : "area error (drawn from 1e-16)",
+      .log_y = true};
   report.add_plot(fmt::format("figure_{}.svg", figure), std::move(series), options);
 }
 
@@ -208,9 +205,8 @@ StudyTable goal_table(const std::vector<int>& degrees,
     if (at == degrees.end()) return;
     const double found =
         results[domain][static_cast<std::size_t>(at - degrees.begin())][equal_tangent].*error;
-    table.rows.push_back(
-        {{count_cell(domain + 1), text_cell(quantity), count_cell(static_cast<std::size_t>(degree)),
-          number_cell(found), number_cell(goal), yes_cell(found <= goal)}});
+    table.rows.push_back({{count_cell(domain + 1), text_cell(quantity), count_cell(degree),
+                           number_cell(found), number_cell(goal), yes_cell(found <= goal)}});
   };
   constexpr std::array energy_goals{5e-5, 4e-7, 4e-5};
   for (std::size_t domain = 0; domain < 3; ++domain)

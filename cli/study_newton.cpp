@@ -96,12 +96,11 @@ std::vector<Series> error_series(const Family& family, int powers) {
 }
 
 PlotOptions error_plot(const std::string& title) {
-  PlotOptions options;
-  options.title = title;
-  options.x_label = "condition number kappa";
-  options.y_label = "relative error (drawn within 1e-17 and 1)";
-  options.log_x = options.log_y = true;
-  return options;
+  return {.title = title,
+          .x_label = "condition number kappa",
+          .y_label = "relative error (drawn within 1e-17 and 1)",
+          .log_x = true,
+          .log_y = true};
 }
 
 /// Rows: parameter, kappa, for each form iterations and error; expected kappa u and u + kappa u^2.
@@ -117,7 +116,7 @@ StudyTable error_table(const Family& family, const StudyColumn& parameter, std::
   const std::size_t n = family.condition.size();
   for (std::size_t i = 0; i < n; ++i) {
     const double kappa = family.condition[i];
-    StudyRow row{{count_cell(static_cast<std::size_t>(family.parameter[i])), number_cell(kappa)},
+    StudyRow row{{count_cell(static_cast<int>(family.parameter[i])), number_cell(kappa)},
                  i % every == 0 || i + 1 == n};
     for (const auto& form : family.reached) {
       row.cells.push_back(number_cell(form[i].error));
@@ -328,8 +327,7 @@ void tangent(StudyReport& report) {
     Series line{name, {}, {}, false, true};
     for (const IntersectionIterate& at : found.history) {
       distance.back().push_back(std::hypot(at.s - 0.5, at.t - 0.5));
-      line.x.push_back(static_cast<double>(line.x.size()));
-      line.y.push_back(std::max(distance.back().back(), 1e-17));
+      add_point(line, static_cast<double>(line.x.size()), distance.back().back(), 1e-17);
     }
     steps = std::max(steps, found.history.size());
     series.push_back(std::move(line));
@@ -364,11 +362,10 @@ void tangent(StudyReport& report) {
   series.push_back(std::move(halving));
   series.push_back(std::move(lasting));
   report.add(std::move(table));
-  PlotOptions options;
-  options.title = "Section 6.3: Newton's method at a tangent intersection";
-  options.x_label = "step";
-  options.y_label = "distance from the intersection";
-  options.log_y = true;
+  const PlotOptions options{.title = "Section 6.3: Newton's method at a tangent intersection",
+                            .x_label = "step",
+                            .y_label = "distance from the intersection",
+                            .log_y = true};
   report.add_plot("tangent.svg", std::move(series), options);
 }
 
@@ -453,11 +450,10 @@ void false_start(StudyReport& report) {
       const Dyadic p = exact.value(s);
       const double condition = exact.condition(s);
       const double computed = bernstein::evaluate_compensated<double>(b, s, 1);
-      table.rows.push_back(
-          {{count_cell(static_cast<std::size_t>(t)), count_cell(static_cast<std::size_t>(n)),
-            number_cell(condition), number_cell(relative_error(computed, p)),
-            number_cell(n * u * std::pow(condition, 1.0 / n)),
-            number_cell(3 * n * u * condition)}});
+      table.rows.push_back({{count_cell(t), count_cell(n), number_cell(condition),
+                             number_cell(relative_error(computed, p)),
+                             number_cell(n * u * std::pow(condition, 1.0 / n)),
+                             number_cell(3 * n * u * condition)}});
     }
   }
   report.add(std::move(table));

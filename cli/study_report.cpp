@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -39,14 +40,17 @@ Cell number_cell(double value) {
 Cell exact_cell(double value) {
   return {exact_text(value), value};
 }
-Cell count_cell(std::size_t n) {
-  return {fmt::format("{}", n), n};
-}
 Cell text_cell(const std::string& text) {
   return {text, text};
 }
 Cell yes_cell(bool yes) {
   return {yes ? "yes" : "no", yes};
+}
+
+void add_point(Series& line, double x, double y, double lowest) {
+  if (!std::isfinite(y)) return;
+  line.x.push_back(x);
+  line.y.push_back(std::max(y, lowest));
 }
 
 void StudyReport::add(StudyTable table) {

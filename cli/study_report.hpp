@@ -1,6 +1,7 @@
 #pragma once
 // Tables and plots of a study: Markdown, CSV and JSON beside what was expected.
 
+#include <concepts>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -20,7 +21,9 @@ struct Cell {
 Cell number_cell(double value);
 /// The double to round-trip.
 Cell exact_cell(double value);
-Cell count_cell(std::size_t n);
+Cell count_cell(std::integral auto n) {
+  return {std::to_string(n), n};
+}
 Cell text_cell(const std::string& text);
 /// "yes" and true, or "no" and false.
 Cell yes_cell(bool yes);
@@ -40,6 +43,10 @@ struct StudyTable {
   std::vector<StudyColumn> columns;
   std::vector<StudyRow> rows;
 };
+
+/// Appends a point to a line, its y at least `lowest` so that a logarithmic axis can show it; none
+/// when y is not finite.
+void add_point(Series& line, double x, double y, double lowest);
 
 /// Collects all of a study, then writes it: nothing is left when something fails before.
 class StudyReport {

@@ -3,18 +3,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <numbers>
 
-#include "bezel/base/atomic_file.hpp"
 #include "bezel/field/field.hpp"
 #include "bezel/mesh/generate.hpp"
 #include "bezel/transfer/transfer.hpp"
-#include "bezel/view/draw.hpp"
-#include "study.hpp"
+#include "cli/study.hpp"
+#include "cli/study_report.hpp"
 
 namespace bezel::cli {
 namespace {
@@ -27,11 +26,14 @@ constexpr std::array<Function, 3> functions = {{{"zeta1", "5*y^3 + x^2 + 2*y + 3
                                                 {"zeta2", "exp(x^2) + 2*y"},
                                                 {"zeta3", "sin(x) + cos(y)"}}};
 constexpr std::array<const char*, 3> degree_names = {"linear", "quadratic", "cubic"};
-constexpr int levels = 5;
+// Of lines of the physical and the reference basis.
+constexpr std::array<std::array<const char*, 2>, 3> degree_colours = {
+    {{"#0072b2", "#56b4e9"}, {"#b34700", "#f0a050"}, {"#00664b", "#5fc9a5"}}};
+constexpr int most_levels = 5;
 
 /// Relative L2 errors read off the plots of [hermes2018, fig. 4.17] (axis calibration +-4 %); 0:
 /// not published.
-using Published = std::array<double, levels>;
+using Published = std::array<double, most_levels>;
 constexpr std::array<std::array<Published, 3>, 3> published = {{
     {{{0, 1.41e-2, 3.49e-3, 8.78e-4, 2.19e-4},
       {4.89e-3, 5.91e-4, 7.36e-5, 9.17e-6, 1.15e-6},
@@ -44,35 +46,50 @@ constexpr std::array<std::array<Published, 3>, 3> published = {{
       {3.13e-5, 1.86e-6, 1.17e-7, 7.31e-9, 5.33e-10}}},
 }};
 
-struct Result {
-  std::array<double, levels> physical{}, reference{};
-};
 struct Level {
-  std::size_t donor_elements, target_elements;
-  double mass_defect, partition_residual;
+  std::size_t donor_elements = 0, target_elements = 0;
+  std::array<double, functions.size()> physical{}, reference{};  // errors by the donor's basis
+  double mass_defect = 0.0, partition_residual = 0.0;
   TransferReport::Seconds seconds;  // of all transfers of this level
-  std::int64_t pairs;
+  std::int64_t pairs = 0;
 };
+/// [degree - 1][level]
+using Levels = std::array<std::vector<Level>, degree_names.size()>;
 
-std::string number(double x) {
-  return x > 0.0 ? fmt::format("{:.2e}", x) : std::string("-");
+Level measure(const std::shared_ptr<const TriangleMesh>& donor,
+              const std::shared_ptr<const TriangleMesh>& target,
+              const std::vector<Formula>& formulas) {
+  Level out;
+  out.donor_elements = donor->element_count();
+  out.target_elements = target->element_count();
+  for (const Basis basis : {Basis::physical, Basis::reference}) {
+    const auto space = Space::discontinuous(donor, donor->degree(), basis);
+    std::vector<Field> fields;
+    for (std::size_t f = 0; f < functions.size(); ++f)
+      fields.push_back(bezel::sample(functions[f].name, space, std::span(&formulas[f], 1)));
+    const TransferResult moved = bezel::transfer(fields, target);
+    for (std::size_t f = 0; f < functions.size(); ++f) {
+      (basis == Basis::physical ? out.physical : out.reference)[f] =
+          error_norms(moved.fields[f], std::span(&formulas[f], 1)).l2_relative;
+      out.mass_defect = std::max(out.mass_defect, moved.report.fields[f].relative_mass_defect);
+    }
+    out.partition_residual = std::max(out.partition_residual, moved.report.max_partition_residual);
+    out.pairs = moved.report.pairs;
+    const TransferReport::Seconds& took = moved.report.seconds;
+    out.seconds.total += took.total;
+    out.seconds.overlay += took.overlay;
+    out.seconds.integrate += took.integrate;
+    out.seconds.solve += took.solve;
+  }
+  return out;
 }
-std::string order(double coarse, double fine) {
-  return coarse > 1e-12 && fine > 1e-13 ? fmt::format("{:.2f}", std::log2(coarse / fine))
-                                        : std::string("-");
-}
 
-}  // namespace
-
-int run_study_transfer(const std::string& out_dir, bool quick, bool json) {
-  const int count = quick ? 3 : levels;
+Levels measure_all(int count) {
   std::vector<Formula> formulas;
   formulas.reserve(functions.size());
   for (const Function& f : functions) formulas.emplace_back(f.text);
-  std::array<std::array<Result, 3>, 3> results;  // [function][degree - 1]
-  std::array<std::vector<Level>, 3> work;
-
-  for (int g = 1; g <= 3; ++g) {
+  Levels out;
+  for (int g = 1; g <= static_cast<int>(out.size()); ++g) {
     GenerateOptions square;
     square.degree = g;
     square.size = 0.36;
@@ -82,155 +99,120 @@ int run_study_transfer(const std::string& out_dir, bool quick, bool json) {
     disc.seed = 4;
     auto donor = std::make_shared<const TriangleMesh>(generate_rectangle(2.125, 2.125, square));
     auto target = std::make_shared<const TriangleMesh>(generate_disc(1.0, disc));
-    const auto k = static_cast<std::size_t>(g - 1);
     for (int level = 0; level < count; ++level) {
       if (level > 0) {
         donor = std::make_shared<const TriangleMesh>(refine_uniform(*donor));
         target = std::make_shared<const TriangleMesh>(refine_uniform(*target));
       }
-      const auto at = static_cast<std::size_t>(level);
-      Level line{donor->element_count(), target->element_count(), 0, 0, {}, 0};
-      for (const Basis basis : {Basis::physical, Basis::reference}) {
-        const auto space = Space::discontinuous(donor, g, basis);
-        std::vector<Field> fields;
-        for (std::size_t f = 0; f < functions.size(); ++f) {
-          fields.push_back(bezel::sample(functions[f].name, space, std::span(&formulas[f], 1)));
-        }
-        const TransferResult moved = bezel::transfer(fields, target);
-        for (std::size_t f = 0; f < functions.size(); ++f) {
-          const double error = error_norms(moved.fields[f], std::span(&formulas[f], 1)).l2_relative;
-          Result& result = results[f][k];
-          (basis == Basis::physical ? result.physical : result.reference)[at] = error;
-          line.mass_defect =
-              std::max(line.mass_defect, moved.report.fields[f].relative_mass_defect);
-        }
-        line.partition_residual =
-            std::max(line.partition_residual, moved.report.max_partition_residual);
-        line.pairs = moved.report.pairs;
-        const TransferReport::Seconds& took = moved.report.seconds;
-        line.seconds.total += took.total;
-        line.seconds.overlay += took.overlay;
-        line.seconds.integrate += took.integrate;
-        line.seconds.solve += took.solve;
-      }
-      work[k].push_back(line);
+      out[static_cast<std::size_t>(g - 1)].push_back(measure(donor, target, formulas));
     }
   }
+  return out;
+}
 
-  std::filesystem::create_directories(out_dir);
-  nlohmann::json document = {
-      {"schema", "bezel/study/1"}, {"study", "transfer"}, {"tables", nlohmann::json::array()}};
-  std::string csv =
-      "function,degree,level,donor_elements,target_elements,error_physical,error_reference,error_"
-      "published\n";
-  std::string text;
-  for (std::size_t f = 0; f < functions.size(); ++f) {
-    const std::string title = fmt::format("{} = {}: relative L2 error on the target",
-                                          functions[f].name, functions[f].text);
-    const std::vector<std::string> columns = {
-        "degree", "level",           "donor elements", "target elements", "physical basis",
-        "order",  "reference basis", "order",          "published",       "order"};
-    text += "### " + title + "\n\n| " + fmt::format("{}", fmt::join(columns, " | ")) + " |\n|";
-    for (std::size_t c = 0; c < columns.size(); ++c) text += c == 0 ? "---|" : "---:|";
-    text += "\n";
-    nlohmann::json rows = nlohmann::json::array();
-    nlohmann::json paper = nlohmann::json::array();
-    std::vector<Series> series;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Result& r = results[f][k];
-      Series ours{fmt::format("{}, physical", degree_names[k]), {}, {}, false};
-      Series mapped{fmt::format("{}, reference", degree_names[k]), {}, {}, false};
-      Series theirs{fmt::format("{}, published", degree_names[k]), {}, {}, true};
-      for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-        const Level& line = work[k][i];
-        const double p = published[f][k][i];
-        const auto rate = [&](const std::array<double, levels>& e) {
-          return i > 0 ? order(e[i - 1], e[i]) : std::string("-");
-        };
-        text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
-                            degree_names[k], i, line.donor_elements, line.target_elements,
-                            number(r.physical[i]), rate(r.physical), number(r.reference[i]),
-                            rate(r.reference), number(p), rate(published[f][k]));
-        csv += fmt::format("{},{},{},{},{},{:.17g},{:.17g},{:.17g}\n", functions[f].name, k + 1, i,
-                           line.donor_elements, line.target_elements, r.physical[i], r.reference[i],
-                           p);
-        rows.push_back({{"degree", k + 1},
-                        {"level", i},
-                        {"donor_elements", line.donor_elements},
-                        {"target_elements", line.target_elements},
-                        {"error_physical", r.physical[i]},
-                        {"error_reference", r.reference[i]}});
-        paper.push_back({{"degree", k + 1},
-                         {"level", i},
-                         {"error", p > 0.0 ? nlohmann::json(p) : nlohmann::json()}});
-        const double h = std::sqrt(3.141592653589793 / static_cast<double>(line.target_elements));
-        ours.x.push_back(h);
-        ours.y.push_back(std::max(r.physical[i], 1e-17));
-        mapped.x.push_back(h);
-        mapped.y.push_back(std::max(r.reference[i], 1e-17));
-        if (p > 0.0) {
-          theirs.x.push_back(h);
-          theirs.y.push_back(p);
-        }
-      }
-      series.push_back(ours);
-      series.push_back(mapped);
-      series.push_back(theirs);
+/// The observed order between two levels; none where rounding decides.
+Cell order_cell(double coarse, double fine) {
+  if (!(coarse > 1e-12 && fine > 1e-13)) return number_cell(NAN);
+  const double order = std::log2(coarse / fine);
+  return {fmt::format("{:.2f}", order), order};
+}
+
+Cell degree_cell(std::size_t k) {
+  return {degree_names[k], k + 1};
+}
+
+void add_errors(StudyReport& report, std::size_t f, const Levels& levels) {
+  const auto [name, formula] = functions[f];
+  StudyTable table;
+  table.file = fmt::format("transfer_{}", name);
+  table.title = fmt::format("{} = {}: relative L2 error on the target", name, formula);
+  table.columns = {{"degree", "degree"},
+                   {"level", "level"},
+                   {"donor elements", "donor_elements"},
+                   {"target elements", "target_elements"},
+                   {"physical basis", "error_physical"},
+                   {"order", "order_physical"},
+                   {"reference basis", "error_reference"},
+                   {"order", "order_reference"},
+                   {"published", "error_published", true},
+                   {"order", "order_published", true}};
+  std::vector<Series> series;
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    Series physical{fmt::format("{}, physical", degree_names[k]), {}, {}};
+    Series reference{fmt::format("{}, reference", degree_names[k]), {}, {}};
+    Series theirs{k + 1 == levels.size() ? "published" : "", {}, {}, true};
+    physical.colour = degree_colours[k][0];
+    reference.colour = degree_colours[k][1];
+    theirs.colour = "#777777";
+    for (std::size_t i = 0; i < levels[k].size(); ++i) {
+      // Without a coarser level, one of error 0 stands in: no order.
+      const Level& at = levels[k][i];
+      const Level before = i > 0 ? levels[k][i - 1] : Level{};
+      const double known = published[f][k][i] > 0.0 ? published[f][k][i] : NAN;
+      table.rows.push_back(
+          {{degree_cell(k), count_cell(i), count_cell(at.donor_elements),
+            count_cell(at.target_elements), number_cell(at.physical[f]),
+            order_cell(before.physical[f], at.physical[f]), number_cell(at.reference[f]),
+            order_cell(before.reference[f], at.reference[f]), number_cell(known),
+            order_cell(i > 0 ? published[f][k][i - 1] : 0.0, known)}});
+      const double h = std::sqrt(std::numbers::pi / static_cast<double>(at.target_elements));
+      add_point(physical, h, at.physical[f], 1e-17);
+      add_point(reference, h, at.reference[f], 1e-17);
+      add_point(theirs, h, known, 1e-17);
     }
-    text += "\n";
-    document["tables"].push_back({{"title", title},
-                                  {"columns",
-                                   {"degree", "level", "donor_elements", "target_elements",
-                                    "error_physical", "error_reference"}},
-                                  {"rows", rows},
-                                  {"paper", paper}});
-    PlotOptions options;
-    options.title = fmt::format("Transfer of {} = {}", functions[f].name, functions[f].text);
-    options.x_label = "h = sqrt(disc area / target elements)";
-    options.y_label = "relative L2 error";
-    options.log_x = options.log_y = true;
-    plot((std::filesystem::path(out_dir) / fmt::format("transfer_{}.svg", functions[f].name))
-             .string(),
-         series, options);
+    for (Series* line : {&physical, &reference, &theirs}) series.push_back(std::move(*line));
   }
-  text +=
-      "### Conservation and cost\n\n| degree | level | pairs | largest relative mass defect | "
-      "largest partition residual | "
-      "pairs per second (three fields, both bases) | overlay | integrate | solve |\n"
-      "|---|---:|---:|---:|---:|---:|---:|---:|---:|\n";
-  nlohmann::json rows = nlohmann::json::array();
-  for (std::size_t k = 0; k < 3; ++k) {
-    for (std::size_t i = 0; i < work[k].size(); ++i) {
-      const Level& line = work[k][i];
-      const TransferReport::Seconds& took = line.seconds;
-      const double phases = took.overlay + took.integrate + took.solve;
-      text += fmt::format(
-          "| {} | {} | {} | {:.1e} | {:.1e} | {:.2e} | {:.0f} % | {:.0f} % | {:.0f} % |\n",
-          degree_names[k], i, line.pairs, line.mass_defect, line.partition_residual,
-          2.0 * static_cast<double>(line.pairs) / took.total, 100.0 * took.overlay / phases,
-          100.0 * took.integrate / phases, 100.0 * took.solve / phases);
-      rows.push_back({{"degree", k + 1},
-                      {"level", i},
-                      {"pairs", line.pairs},
-                      {"relative_mass_defect", line.mass_defect},
-                      {"max_partition_residual", line.partition_residual},
-                      {"seconds", took.total},
-                      {"overlay", took.overlay},
-                      {"integrate", took.integrate},
-                      {"solve", took.solve}});
+  report.add(std::move(table));
+  report.add_plot(fmt::format("transfer_{}.svg", name), std::move(series),
+                  {.title = fmt::format("Transfer of {} = {}", name, formula),
+                   .x_label = "h = sqrt(disc area / target elements)",
+                   .y_label = "relative L2 error",
+                   .log_x = true,
+                   .log_y = true});
+}
+
+StudyTable cost_table(const Levels& levels) {
+  StudyTable table;
+  table.file = "transfer_cost";
+  table.title = "Conservation and cost";
+  table.remark =
+      "Of three fields in both bases. Overlay, integrate, solve: their shares of the time; the CSV "
+      "file has seconds.";
+  table.columns = {{"degree", "degree"},
+                   {"level", "level"},
+                   {"pairs", "pairs"},
+                   {"largest relative mass defect", "relative_mass_defect"},
+                   {"largest partition residual", "max_partition_residual"},
+                   {"pairs per second", "pairs_per_second"},
+                   {"seconds", "seconds"},
+                   {"overlay", "overlay"},
+                   {"integrate", "integrate"},
+                   {"solve", "solve"}};
+  for (std::size_t k = 0; k < levels.size(); ++k)
+    for (std::size_t i = 0; i < levels[k].size(); ++i) {
+      const Level& at = levels[k][i];
+      const TransferReport::Seconds& took = at.seconds;
+      const auto share = [&](double seconds) {
+        const double all = took.overlay + took.integrate + took.solve;
+        return Cell{fmt::format("{:.0f} %", 100.0 * seconds / all), seconds};
+      };
+      table.rows.push_back(
+          {{degree_cell(k), count_cell(i), count_cell(at.pairs), number_cell(at.mass_defect),
+            number_cell(at.partition_residual),
+            number_cell(2.0 * static_cast<double>(at.pairs) / took.total), number_cell(took.total),
+            share(took.overlay), share(took.integrate), share(took.solve)}});
     }
-  }
-  document["tables"].push_back(
-      {{"title", "Conservation and cost"},
-       {"columns",
-        {"degree", "level", "pairs", "relative_mass_defect", "max_partition_residual", "seconds",
-         "overlay", "integrate", "solve"}},
-       {"rows", rows},
-       {"paper", nlohmann::json::array()}});
-  write_file((std::filesystem::path(out_dir) / "transfer.csv").string(), csv);
-  write_file((std::filesystem::path(out_dir) / "transfer.md").string(), text);
-  const std::string printed = json ? document.dump() + "\n" : text;
-  std::fwrite(printed.data(), 1, printed.size(), stdout);
+  return table;
+}
+
+}  // namespace
+
+int run_study_transfer(const std::string& out_dir, bool quick, bool json) {
+  const Levels levels = measure_all(quick ? 3 : most_levels);
+  StudyReport report("transfer");
+  for (std::size_t f = 0; f < functions.size(); ++f) add_errors(report, f, levels);
+  report.add(cost_table(levels));
+  report.write(out_dir, json);
   return 0;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
 #include "bezel/bernstein/checks.hpp"
 #include "bezel/bernstein/interval_kernel.hpp"
@@ -41,6 +42,20 @@ std::vector<Dyadic> ExactPolynomial::specialize(const Dyadic& lo, const Dyadic& 
   std::vector<Dyadic> out(b_.size());
   kernel::specialize(degree(), b_.data(), lo, hi, out.data());
   return out;
+}
+
+std::vector<Dyadic> bisect_exactly(std::vector<Dyadic>& c) {
+  const std::size_t d = c.size() - 1;
+  std::vector<Dyadic> left;
+  left.reserve(c.size());
+  for (std::size_t m = d; m > 0; --m) {
+    left.push_back(c[0].scaled(static_cast<std::int64_t>(m)));
+    for (std::size_t j = 0; j < m; ++j) c[j] += c[j + 1];
+  }
+  left.push_back(c[0]);
+  // c[j] is of level d - j and so far 2^(d - j) times itself.
+  for (std::size_t j = 1; j <= d; ++j) c[j] = c[j].scaled(static_cast<std::int64_t>(j));
+  return left;
 }
 
 }  // namespace bezel::bernstein

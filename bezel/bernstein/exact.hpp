@@ -36,4 +36,10 @@ class ExactPolynomial {
   std::vector<Dyadic> b_, a_;
 };
 
+/// Halves a polynomial without dividing: c becomes its Bernstein coefficients on the right half of
+/// the interval, the result those on the left one, both times 2^degree.
+///
+/// @param c  coefficients, at least one
+std::vector<Dyadic> bisect_exactly(std::vector<Dyadic>& c);
+
 }  // namespace bezel::bernstein

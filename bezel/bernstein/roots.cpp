@@ -100,21 +100,6 @@ int leading_zeros(const Exact& c) {
   return k;
 }
 
-/// Bisects: c becomes the right half, the result is the left one; both times 2^d.
-Exact bisect(Exact& c) {
-  const std::size_t d = c.size() - 1;
-  Exact left;
-  left.reserve(c.size());
-  for (std::size_t m = d; m > 0; --m) {
-    left.push_back(c[0].scaled(static_cast<std::int64_t>(m)));
-    for (std::size_t j = 0; j < m; ++j) c[j] += c[j + 1];
-  }
-  left.push_back(c[0]);
-  // c[j] is of level d - j and so far 2^(d - j) times itself.
-  for (std::size_t j = 1; j <= d; ++j) c[j] = c[j].scaled(static_cast<std::int64_t>(j));
-  return left;
-}
-
 /// Coefficients on [lo, hi], times hi^d.
 Exact restrict_to(Exact c, double lo, double hi) {
   const std::size_t d = c.size() - 1;
@@ -364,7 +349,7 @@ class Finder {
       search_below(p.lo, p.hi, p.lo, std::move(p.exact), 0);
       return {};
     }
-    Exact left = bisect(p.exact);
+    Exact left = bisect_exactly(p.exact);
     p.zeros_at_lo = leading_zeros(p.exact);
     round_to(part(at + 1), left);
     round_to(part(at), p.exact);
@@ -396,7 +381,7 @@ class Finder {
       found_.push_back({half, lo, hi, true, count % 2, count, infinity});
       return;
     }
-    Exact left = bisect(exact);
+    Exact left = bisect_exactly(exact);
     const int zeros = leading_zeros(exact);
     search_below(lo, hi, level == 0 ? lo : half, std::move(left), level + 1);
     if (zeros == 1) found_simple(half, lo, hi);

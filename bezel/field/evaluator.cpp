@@ -57,17 +57,27 @@ struct FieldEvaluator::Impl {
     return place;
   }
 
-  /// Calls visit(place, q) for the points of one chunk after another.
-  void for_points(std::span<const Vec2> points, int threads,
-                  const std::function<void(const Place&, std::size_t)>& visit) const {
-    parallel_for((points.size() + chunk - 1) / chunk,
-                 [&](std::size_t task) {
-                   std::vector<std::int32_t> candidates;
-                   for (std::size_t q = task * chunk;
-                        q < std::min(points.size(), (task + 1) * chunk); ++q)
-                     visit(locate(points[q], candidates), q);
-                 },
-                 threads);
+  /// Puts n values per point to `out`, by `at(element, lambda, values)`; NAN outside the mesh.
+  template <class At>
+  void fill(std::span<const Vec2> points, std::size_t n, std::span<double> out, int threads,
+            const At& at) const {
+    if (out.size() != points.size() * n)
+      throw InputError(
+          fmt::format("found room for {} values, expected {}", out.size(), points.size() * n));
+    parallel_for(
+        (points.size() + chunk - 1) / chunk,
+        [&](std::size_t task) {
+          std::vector<std::int32_t> candidates;
+          for (std::size_t q = task * chunk; q < std::min(points.size(), (task + 1) * chunk); ++q) {
+            const std::span<double> values = out.subspan(q * n, n);
+            const Place place = locate(points[q], candidates);
+            if (place.element.valid())
+              at(place.element, place.lambda, values);
+            else
+              std::fill(values.begin(), values.end(), std::numeric_limits<double>::quiet_NaN());
+          }
+        },
+        threads);
   }
 
   Field field;
@@ -90,32 +100,20 @@ FieldEvaluator::Place FieldEvaluator::locate(const Vec2& p) const {
 
 void FieldEvaluator::evaluate(std::span<const Vec2> points, std::span<double> out,
                               int threads) const {
-  const auto n = static_cast<std::size_t>(impl_->field.components());
-  if (out.size() != points.size() * n)
-    throw InputError(
-        fmt::format("found room for {} values, expected {}", out.size(), points.size() * n));
-  impl_->for_points(points, threads, [&](const Place& place, std::size_t q) {
-    const std::span<double> values = out.subspan(q * n, n);
-    if (place.element.valid())
-      impl_->field.evaluate(place.element, place.lambda, values);
-    else
-      std::fill(values.begin(), values.end(), std::numeric_limits<double>::quiet_NaN());
-  });
+  const Field& field = impl_->field;
+  impl_->fill(points, static_cast<std::size_t>(field.components()), out, threads,
+              [&](ElementId e, const auto& lambda, std::span<double> values) {
+                field.evaluate(e, lambda, values);
+              });
 }
 
 void FieldEvaluator::gradient(std::span<const Vec2> points, std::span<double> out,
                               int threads) const {
-  const std::size_t n = 2 * static_cast<std::size_t>(impl_->field.components());
-  if (out.size() != points.size() * n)
-    throw InputError(
-        fmt::format("found room for {} values, expected {}", out.size(), points.size() * n));
-  impl_->for_points(points, threads, [&](const Place& place, std::size_t q) {
-    const std::span<double> values = out.subspan(q * n, n);
-    if (place.element.valid())
-      impl_->field.gradient(place.element, place.lambda, values);
-    else
-      std::fill(values.begin(), values.end(), std::numeric_limits<double>::quiet_NaN());
-  });
+  const Field& field = impl_->field;
+  impl_->fill(points, 2 * static_cast<std::size_t>(field.components()), out, threads,
+              [&](ElementId e, const auto& lambda, std::span<double> values) {
+                field.gradient(e, lambda, values);
+              });
 }
 
 }  // namespace bezel

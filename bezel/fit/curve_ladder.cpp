@@ -18,6 +18,9 @@ constexpr double steady = 0.2, resolved = 1e-3;
 // From the nodes of the last degree: least distance falls slowly in flat valleys.
 constexpr int last_polish = 160;
 constexpr double last_gain = 1e-4;
+// By which part of the gaps beside them nodes leave a saddle: enough to find the way down above
+// rounding, too little to end in another valley (1e-2 does).
+constexpr double saddle_push = 1e-4;
 // Points this fraction of the length away from the curve are on it.
 constexpr double rounding = 1e-15;
 // Below this fraction of the length, degrees that bring no gain are left out.
@@ -273,6 +276,19 @@ void search_plain(const Problem<dim>& problem, Level<dim>& level, const Nodes<di
   }
 }
 
+// Nodes moved forwards and backwards in turn by a part of the gaps beside them.
+template <int dim>
+Found<dim> pushed(const Problem<dim>& problem, const Found<dim>& from, double part) {
+  Found<dim> out = from;
+  for (int j = 1; j < from.nodes.n; ++j) {
+    const double* t = from.nodes.t.data() + j;
+    const double step = j % 2 == 0 ? -part : part;
+    out.nodes.place(problem.curve, j, t[0] + step * std::min(t[0] - t[-1], t[1] - t[0]));
+  }
+  out.score = measure(problem, out.nodes);
+  return out;
+}
+
 // Never worse than the simple placements.
 template <int dim>
 void offer_simple(const Problem<dim>& problem, Level<dim>& level, int n) {
@@ -407,10 +423,16 @@ void climb(const Problem<dim>& problem, int degree, const Quick<dim>& quick, Fou
     }
     if (final && !within(problem, level.best.score, rounding)) offer_simple(problem, level, n);
     const bool gained = level.done(last, enough);
-    if (final)
-      level.polish(level.best, {.most = last_polish, .least_gain = last_gain});
-    else if (!gained)
-      level.polish(level.best, {.most = 8});
+    if (final) {
+      const DistanceSteps<dim> steps{.most = last_polish, .least_gain = last_gain};
+      const double stuck = 0.9 * level.best.score.d2;
+      level.polish(level.best, steps);
+      // From a saddle, where least distance stops at once, a small push of either sign leads on.
+      if (!level.done(last, factor) && !within(problem, level.best.score, nearly_floor))
+        for (const double part : {saddle_push, -saddle_push})
+          if (level.best.score.d2 > stuck) level.polish(pushed(problem, level.best, part), steps);
+    }
+    if (!final && !gained) level.polish(level.best, {.most = 8});
     before = plain;
     plain = level.plain;
     last = level.best;

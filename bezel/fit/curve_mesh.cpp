@@ -16,6 +16,7 @@
 #include "bezel/geometry/triangle.hpp"
 #include "bezel/mesh/bend.hpp"
 #include "bezel/mesh/edge_finder.hpp"
+#include "bezel/mesh/raised_nodes.hpp"
 
 namespace bezel {
 namespace {
@@ -39,13 +40,14 @@ class Curving {
         interpolator_(options.degree),
         basis_(options.degree),
         vertex_(straight.control().begin(), straight.control().end()),
-        bend_(straight.edge_count() * at(g_ - 1)) {}
+        bend_(straight.edge_count() * at(g_ - 1)),
+        nodes_(straight, options.degree),
+        elements_(nodes_.elements()) {}
 
   CurvedMesh run() {
     match();
     move_vertices();
     for (std::size_t i = 0; i < parts_.size(); ++i) bend_edge(i);
-    number();
     std::vector<Vec2> control = blended();
     std::vector<ElementId> invalid = invalid_elements(control);
     int used = 0;
@@ -58,12 +60,10 @@ class Curving {
       invalid = std::move(left);
       used = steps;
     }
-    Tags found = tags();  // needs the numbers of the nodes
-    CurvedMesh out{
-        .mesh = TriangleMesh(g_, std::move(control), std::move(elements_), std::move(found)),
-        .edges = {},
-        .relaxation_steps = used,
-        .invalid = std::move(invalid)};
+    CurvedMesh out{.mesh = TriangleMesh(g_, std::move(control), std::move(elements_), tags()),
+                   .edges = {},
+                   .relaxation_steps = used,
+                   .invalid = std::move(invalid)};
     out.straight_edges = straight_edges_;
     out.largest_move = largest_move_;
     double squares = 0.0;
@@ -172,36 +172,10 @@ class Curving {
                        [](const Vec2& d) { return d != Vec2{}; });
   }
 
-  /// Numbers of all control points: vertices as they were, then edges, then elements.
-  void number() {
-    const std::size_t size = at(bernstein::triangle_size(g_));
-    const std::size_t edge_nodes = at(g_ - 1), inner_nodes = at((g_ - 1) * (g_ - 2) / 2);
-    const std::size_t edge_base = vertex_.size();
-    const std::size_t inner_base = edge_base + edge_nodes * straight_.edge_count();
-    count_ = inner_base + inner_nodes * straight_.element_count();
-    elements_.assign(size * straight_.element_count(), NodeId());
-    for (std::size_t e = 0; e < straight_.element_count(); ++e) {
-      NodeId* nodes = elements_.data() + e * size;
-      for (int c = 0; c < 3; ++c)
-        nodes[bernstein::triangle_corner(g_, c)] = straight_.nodes(ElementId(e))[at(c)];
-      const auto sides = straight_.edges(ElementId(e));
-      for (int s = 0; s < 3; ++s)
-        for (int m = 1; m < g_; ++m) {
-          const int canonical = sides[at(s)].reversed ? g_ - m : m;
-          nodes[bernstein::triangle_side_index(g_, s, m)] =
-              NodeId(edge_base + sides[at(s)].edge.index() * edge_nodes + at(canonical - 1));
-        }
-      std::size_t inner = inner_base + e * inner_nodes;
-      for (int k = 1; k < g_ - 1; ++k)
-        for (int j = 1; j < g_ - k; ++j)
-          nodes[bernstein::triangle_index(g_, j, k)] = NodeId(inner++);
-    }
-  }
-
   /// Control points of the straight mesh, whose vertices are given, raised to degree g.
   std::vector<Vec2> raised(std::span<const Vec2> vertices) const {
     const std::size_t size = at(bernstein::triangle_size(g_));
-    std::vector<Vec2> control(count_);
+    std::vector<Vec2> control(nodes_.count());
     std::copy(vertices.begin(), vertices.end(), control.begin());
     for (std::size_t e = 0; e < straight_.element_count(); ++e) {
       const auto corner = straight_.nodes(ElementId(e));
@@ -259,8 +233,8 @@ class Curving {
   /// All inner points follow the boundary of `control` from the straight mesh as an elastic body.
   std::vector<Vec2> relax(const std::vector<Vec2>& control, int steps) const {
     const std::size_t size = at(bernstein::triangle_size(g_));
-    std::vector<char> fixed(count_, 0);
-    std::vector<char> used(count_, 0);
+    std::vector<char> fixed(nodes_.count(), 0);
+    std::vector<char> used(nodes_.count(), 0);
     for (std::size_t e = 0; e < straight_.element_count(); ++e) {
       const auto sides = straight_.edges(ElementId(e));
       for (std::size_t n = 0; n < size; ++n) used[elements_[e * size + n].index()] = 1;
@@ -269,7 +243,7 @@ class Curving {
           for (int m = 0; m <= g_; ++m)
             fixed[elements_[e * size + at(bernstein::triangle_side_index(g_, s, m))].index()] = 1;
     }
-    for (std::size_t n = 0; n < count_; ++n)
+    for (std::size_t n = 0; n < nodes_.count(); ++n)
       if (used[n] == 0) fixed[n] = 1;
     return fit::relax_lattice(g_, elements_, raised(straight_.control()), fixed, control, steps);
   }
@@ -277,15 +251,12 @@ class Curving {
   Tags tags() const {
     Tags tags = straight_.tags();
     const EdgeFinder finder(straight_);
-    const std::size_t edge_base = vertex_.size(), edge_nodes = at(g_ - 1);
     std::erase_if(tags.edges,
                   [&](const TaggedEdge& edge) { return !finder.find(edge.nodes).edge.valid(); });
     for (TaggedEdge& edge : tags.edges) {
-      const auto [found, reversed] = finder.find(edge.nodes);
+      const SideEdge found = finder.find(edge.nodes);
       std::vector<NodeId> nodes = {edge.nodes[0]};
-      for (std::size_t m = 0; m < edge_nodes; ++m)
-        nodes.emplace_back(edge_base + found.index() * edge_nodes +
-                           (reversed ? edge_nodes - 1 - m : m));
+      for (int m = 1; m < g_; ++m) nodes.push_back(nodes_.edge(found, m));
       nodes.push_back(edge.nodes[1]);
       edge.nodes = std::move(nodes);
     }
@@ -302,8 +273,9 @@ class Curving {
   std::vector<Vec2> bend_;  // g - 1 per edge, in its canonical direction
   std::vector<EdgePart> parts_;
   std::vector<FittedEdge> edges_;
+  RaisedNodes nodes_;
   std::vector<NodeId> elements_;
-  std::size_t count_ = 0, straight_edges_ = 0;
+  std::size_t straight_edges_ = 0;
   double largest_move_ = 0.0;
 };
 

@@ -48,20 +48,6 @@ bool is_zero(const Exact& c) {
   return std::all_of(c.begin(), c.end(), [](const Dyadic& x) { return x.sign() == 0; });
 }
 
-/// c becomes the right half, the result is the left one; both times 2^d.
-Exact bisect(Exact& c) {
-  const std::size_t d = c.size() - 1;
-  Exact left;
-  left.reserve(c.size());
-  for (std::size_t m = d; m > 0; --m) {
-    left.push_back(c[0].scaled(static_cast<std::int64_t>(m)));
-    for (std::size_t j = 0; j < m; ++j) c[j] += c[j + 1];
-  }
-  left.push_back(c[0]);
-  for (std::size_t j = 1; j <= d; ++j) c[j] = c[j].scaled(static_cast<std::int64_t>(j));
-  return left;
-}
-
 class Search {
  public:
   /// Of the curve with control points plus - minus and the origin.
@@ -198,7 +184,7 @@ class Search {
         out_.incidences.push_back({lo, hi, count % 2 == 1});
         return;
       }
-      Exact left_x = bisect(x), left_y = bisect(y);
+      Exact left_x = bernstein::bisect_exactly(x), left_y = bernstein::bisect_exactly(y);
       const double mid = smallest ? lo : lo + 0.5 * (hi - lo);
       if (x.front().sign() == 0 && y.front().sign() == 0)
         out_.incidences.push_back({mid, smallest ? hi : mid, true});

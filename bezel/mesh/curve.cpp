@@ -10,6 +10,7 @@
 #include "bezel/geometry/triangle.hpp"
 #include "bezel/mesh/bend.hpp"
 #include "bezel/mesh/planar.hpp"
+#include "bezel/mesh/raised_nodes.hpp"
 #include "bezel/numeric/binomial.hpp"
 #include "bezel/numeric/quadrature.hpp"
 
@@ -149,37 +150,21 @@ class Curving {
   }
 
   TriangleMesh mesh() const {
-    const std::size_t edge_nodes = at(g_ - 1), inner_nodes = at((g_ - 1) * (g_ - 2) / 2);
-    const std::size_t edge_base = t_.points.size();
-    const std::size_t inner_base = edge_base + edge_nodes * segment_.size();
-    const std::size_t size = at(bernstein::triangle_size(g_));
-    std::vector<Vec2> control(inner_base + inner_nodes * straight_.element_count());
-    std::vector<NodeId> elements(size * straight_.element_count());
+    const RaisedNodes numbers(straight_, g_);
+    std::vector<NodeId> elements = numbers.elements();
+    std::vector<Vec2> control(numbers.count());
     std::copy(t_.points.begin(), t_.points.end(), control.begin());
     for (std::size_t e = 0; e < segment_.size(); ++e)
       for (int m = 1; m < g_; ++m)
-        control[edge_base + e * edge_nodes + at(m - 1)] = edge_point(e, m);
+        control[numbers.edge({EdgeId(e), false}, m).index()] = edge_point(e, m);
+    const std::size_t size = at(bernstein::triangle_size(g_));
     std::vector<Vec2> local(size);
-    for (std::size_t e = 0; e < straight_.element_count(); ++e) {
-      NodeId* nodes = elements.data() + e * size;
-      for (int c = 0; c < 3; ++c)
-        nodes[bernstein::triangle_corner(g_, c)] = straight_.nodes(ElementId(e))[at(c)];
-      const auto sides = straight_.edges(ElementId(e));
-      for (int s = 0; s < 3; ++s)
-        for (int m = 1; m < g_; ++m) {
-          const int canonical = sides[at(s)].reversed ? g_ - m : m;
-          nodes[bernstein::triangle_side_index(g_, s, m)] =
-              NodeId(edge_base + sides[at(s)].edge.index() * edge_nodes + at(canonical - 1));
-        }
-      if (g_ < 3) continue;
+    for (std::size_t e = 0; e < straight_.element_count() && g_ >= 3; ++e) {
       gather(ElementId(e), local);
-      std::size_t inner = inner_base + e * inner_nodes;
-      for (int k = 1; k < g_ - 1; ++k)
-        for (int j = 1; j < g_ - k; ++j, ++inner) {
-          const int n = bernstein::triangle_index(g_, j, k);
-          nodes[n] = NodeId(inner);
-          control[inner] = local[at(n)];
-        }
+      for (std::size_t n = 0; n < size; ++n) {
+        const std::size_t node = elements[e * size + n].index();
+        if (node >= numbers.inner(ElementId(e))) control[node] = local[n];
+      }
     }
     Tags found = tags(elements);
     return TriangleMesh(g_, std::move(control), std::move(elements), std::move(found));

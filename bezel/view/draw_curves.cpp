@@ -11,6 +11,7 @@
 #include "bezel/geometry/curve_shape.hpp"
 #include "bezel/view/canvas.hpp"
 #include "bezel/view/label_placer.hpp"
+#include "bezel/view/legend_rows.hpp"
 #include "bezel/view/marker.hpp"
 #include "bezel/view/ticks.hpp"
 
@@ -217,22 +218,14 @@ class Drawing {
                                                    : 26.0;
   }
 
-  /// Where the entries stand, row by row, and the number of rows.
+  /// Places of the entries above the frame; the number of rows.
   int place_legend() {
-    const double left = 14.0 * unit_, right = options_.width - 10.0 * unit_;
-    double x = left;
-    int row = 0;
-    entry_places_.clear();
-    for (const LegendEntry& entry : legend_) {
-      const double width = entry_width(entry);
-      if (x > left && x + width > right) {
-        x = left;
-        ++row;
-      }
-      entry_places_.push_back(Vec2{{x, (20.0 + 21.0 * row) * unit_}});
-      x += width;
-    }
-    return legend_.empty() ? 0 : row + 1;
+    std::vector<double> widths;
+    for (const LegendEntry& entry : legend_) widths.push_back(entry_width(entry));
+    view::LegendRows rows = view::legend_rows(widths, Vec2{{14.0 * unit_, 20.0 * unit_}},
+                                              options_.width - 10.0 * unit_, 21.0 * unit_);
+    entry_places_ = std::move(rows.places);
+    return rows.count;
   }
 
   void lay_out() {

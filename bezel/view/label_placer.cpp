@@ -122,4 +122,29 @@ LabelPlacer::Place LabelPlacer::place(const Vec2& point, const Vec2& size, doubl
   return best;
 }
 
+LabelPlacer::Room LabelPlacer::room_at_side(const Vec2& size, double inset, double margin) {
+  std::vector<Vec2> places{Vec2{{1.0, 0.0}}, Vec2{{0.0, 0.0}}, Vec2{{0.0, 1.0}}, Vec2{{1.0, 1.0}},
+                           Vec2{{1.0, 0.5}}, Vec2{{0.0, 0.5}}, Vec2{{0.5, 0.0}}, Vec2{{0.5, 1.0}}};
+  constexpr int steps = 8;
+  for (int k = 1; k < steps; ++k) {
+    const double f = static_cast<double>(k) / steps;
+    for (const Vec2& p : {Vec2{{1.0, f}}, Vec2{{0.0, f}}, Vec2{{f, 0.0}}, Vec2{{f, 1.0}}})
+      places.push_back(p);
+  }
+  const Vec2 around{{inset, inset}}, lo = frame_.lo + around, room = frame_.hi - size - around - lo;
+  Room best{lo, true};
+  double least = INFINITY;
+  for (const Vec2& p : places) {
+    const Vec2 corner{{lo.x() + p.x() * room.x(), lo.y() + p.y() * room.y()}};
+    Box2 box;
+    box.include(corner - Vec2{{margin, margin}});
+    box.include(corner + size + Vec2{{margin, margin}});
+    const double c = cost(box, box.centre());
+    if (c >= least) continue;
+    least = c;
+    best = {corner, c > 0.0};
+  }
+  return best;
+}
+
 }  // namespace bezel::view

@@ -27,6 +27,16 @@ class LabelPlacer {
   /// @param clearance  from the point to the nearest label, at least
   Place place(const Vec2& point, const Vec2& size, double clearance);
 
+  struct Room {
+    Vec2 corner;   ///< the smaller coordinates of the box
+    bool covered;  ///< whether the box covers lines, discs or labels
+  };
+  /// Where along the frame a box of this size covers least: in a corner, at the middle of a side,
+  /// then elsewhere on the sides.
+  /// @param inset   from the frame, at least
+  /// @param margin  around the box that lines should not cross either
+  Room room_at_side(const Vec2& size, double inset, double margin);
+
  private:
   struct Disc {
     Vec2 centre;

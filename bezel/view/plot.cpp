@@ -6,6 +6,8 @@
 #include "bezel/base/error.hpp"
 #include "bezel/view/canvas.hpp"
 #include "bezel/view/draw.hpp"
+#include "bezel/view/label_placer.hpp"
+#include "bezel/view/legend_rows.hpp"
 #include "bezel/view/marker.hpp"
 #include "bezel/view/ticks.hpp"
 
@@ -129,6 +131,7 @@ class Plot {
                         series[i].scatter || (!series[i].dashed && !many),
                         series[i].scatter && many ? 2.6 : 4.0});
     }
+    lay_out_legend();
   }
 
   void draw(Canvas& canvas) const {
@@ -249,77 +252,73 @@ class Plot {
 
   void draw_series(Canvas& canvas, std::size_t i) const { draw_line(canvas, i, points(i)); }
 
-  void draw_legend(Canvas& canvas) const {
+  // ---- Legend: inside the frame where it hides nothing, else in rows above the frame
+
+  double sample_width() const { return 34.0 * unit_; }
+
+  void lay_out_legend() {
     double widest = 0.0;
-    std::vector<std::size_t> named;
+    std::vector<double> widths;
     for (std::size_t i = 0; i < series_.size(); ++i) {
       if (series_[i].name.empty()) continue;
-      named.push_back(i);
-      widest = std::max(widest, view::text_width(series_[i].name, label_));
+      named_.push_back(i);
+      // Viewers of SVG may have a wider font.
+      const double width = 1.15 * view::text_width(series_[i].name, label_);
+      widest = std::max(widest, width);
+      widths.push_back(sample_width() + width + 28.0 * unit_);
     }
-    if (named.empty()) return;
-    widest *= 1.15;  // viewers of SVG may have a wider font
-    const double row = 21.0 * unit_, sample = 34.0 * unit_, inset = 10.0 * unit_;
+    if (named_.empty()) return;
+    const double row = 21.0 * unit_, inset = 10.0 * unit_;
     const Vec2 size{
-        {3.0 * inset + sample + widest, inset + row * static_cast<double>(named.size())}};
-    const Vec2 corner = legend_corner(size);
-    Box2 box;
-    box.include(corner);
-    box.include(corner + size);
-    Path outline;
-    outline.rectangle(box);
-    canvas.fill(outline, Colour{1.0, 1.0, 1.0, 0.88});
-    canvas.stroke(outline, {major_grid, 0.8 * unit_});
-    for (std::size_t k = 0; k < named.size(); ++k) {
-      const double y = corner.y() + 0.5 * inset + row * (static_cast<double>(k) + 0.5);
-      const double x = corner.x() + inset;
-      Path line, marker;
-      line.move(Vec2{{x, y}});
-      line.line(Vec2{{x + sample, y}});
-      if (!series_[named[k]].scatter) canvas.stroke(line, line_style(named[k]));
-      add_marker(marker, looks_[named[k]].shape, Vec2{{x + 0.5 * sample, y}}, 4.0 * unit_);
-      if (looks_[named[k]].markers) canvas.fill(marker, looks_[named[k]].colour);
-      canvas.text(Vec2{{x + sample + inset, y + 0.35 * label_.size}}, series_[named[k]].name,
-                  label_);
+        {3.0 * inset + sample_width() + widest, inset + row * static_cast<double>(named_.size())}};
+    view::LabelPlacer placer(frame_);
+    for (std::size_t i = 0; i < series_.size(); ++i) {
+      const std::vector<Vec2> p = points(i);
+      if (series_[i].scatter) {
+        for (const Vec2& q : p) placer.avoid({&q, 1});
+      } else {
+        placer.avoid(p);
+      }
     }
+    const view::LabelPlacer::Room room = placer.room_at_side(size, 12.0 * unit_, 6.0 * unit_);
+    const Vec2 first{{frame_.lo.x(), frame_.lo.y() + 0.3 * row}};
+    view::LegendRows rows = view::legend_rows(widths, first, frame_.hi.x(), row);
+    if (rows.count > 1) {  // in columns where that takes no more rows
+      widths.assign(widths.size(), *std::max_element(widths.begin(), widths.end()));
+      view::LegendRows columns = view::legend_rows(widths, first, frame_.hi.x(), row);
+      if (columns.count == rows.count) rows = std::move(columns);
+    }
+    const double top = frame_.lo.y() + row * rows.count;
+    if (room.covered && frame_.hi.y() - top > 0.5 * options_.height) {
+      frame_.lo = Vec2{{frame_.lo.x(), top}};
+      entries_ = std::move(rows.places);
+      return;
+    }
+    legend_box_.include(room.corner);
+    legend_box_.include(room.corner + size);
+    for (std::size_t k = 0; k < named_.size(); ++k)
+      entries_.push_back(room.corner +
+                         Vec2{{inset, 0.5 * inset + row * (static_cast<double>(k) + 0.5)}});
   }
 
-  /// The corner or middle of a side that hides least of the curves; the first of equals.
-  Vec2 legend_corner(const Vec2& size) const {
-    const double inset = 12.0 * unit_;
-    const Vec2 lo = frame_.lo + Vec2{{inset, inset}}, hi = frame_.hi - size - Vec2{{inset, inset}};
-    Vec2 best = lo;
-    double least = INFINITY;
-    for (const auto& [fx, fy] : {std::pair{1.0, 0.0},
-                                 {0.0, 0.0},
-                                 {0.0, 1.0},
-                                 {1.0, 1.0},
-                                 {1.0, 0.5},
-                                 {0.0, 0.5},
-                                 {0.5, 0.0},
-                                 {0.5, 1.0}}) {
-      const Vec2 corner{{lo.x() + fx * (hi.x() - lo.x()), lo.y() + fy * (hi.y() - lo.y())}};
-      Box2 box;
-      box.include(corner - Vec2{{6.0 * unit_, 6.0 * unit_}});
-      box.include(corner + size + Vec2{{6.0 * unit_, 6.0 * unit_}});
-      double hidden = 0.0;  // length of curves below, a point for each marker
-      for (std::size_t i = 0; i < series_.size(); ++i) {
-        const std::vector<Vec2> p = points(i);
-        for (std::size_t k = 0; k < p.size(); ++k) {
-          if (box.contains(p[k])) hidden += 10.0;
-          if (k == 0 || series_[i].scatter) continue;
-          const int steps = std::clamp(static_cast<int>(norm(p[k] - p[k - 1]) / 4.0), 1, 1000);
-          for (int q = 0; q < steps; ++q)
-            if (box.contains(p[k - 1] + (static_cast<double>(q) / steps) * (p[k] - p[k - 1])))
-              hidden += 4.0;
-        }
-      }
-      if (hidden < least) {
-        least = hidden;
-        best = corner;
-      }
+  void draw_legend(Canvas& canvas) const {
+    if (!legend_box_.empty()) {
+      Path outline;
+      outline.rectangle(legend_box_);
+      canvas.fill(outline, Colour{1.0, 1.0, 1.0, 0.88});
+      canvas.stroke(outline, {major_grid, 0.8 * unit_});
     }
-    return best;
+    for (std::size_t k = 0; k < named_.size(); ++k) {
+      const std::size_t i = named_[k];
+      const Vec2 from = entries_[k], to = from + Vec2{{sample_width(), 0.0}};
+      Path line, marker;
+      line.move(from);
+      line.line(to);
+      if (!series_[i].scatter) canvas.stroke(line, line_style(i));
+      add_marker(marker, looks_[i].shape, 0.5 * (from + to), 4.0 * unit_);
+      if (looks_[i].markers) canvas.fill(marker, looks_[i].colour);
+      canvas.text(to + Vec2{{10.0 * unit_, 0.35 * label_.size}}, series_[i].name, label_);
+    }
   }
 
   const std::vector<Series>& series_;
@@ -329,6 +328,9 @@ class Plot {
   TextStyle label_, title_;
   Box2 frame_;
   std::vector<Look> looks_;
+  std::vector<std::size_t> named_;  // series in the legend
+  std::vector<Vec2> entries_;       // where their samples begin
+  Box2 legend_box_;                 // empty: the legend is above the frame
 };
 
 }  // namespace

@@ -28,9 +28,9 @@ const std::vector<std::string> seeds = {
     "{\"shape\": \"superellipse n=3 a=2 from=0.1 to=3\"}",
     "{\"shape\": \"polynomial x=0,1,2 y=1,2 from=-1\"}"};
 
-/// @return whether it was read; anything but InputError with one line is thrown on
+/// @return whether it was read; test::read_or_refused
 bool read(const std::string& json) {
-  try {
+  return test::read_or_refused([&] {
     const CurveSpecs all = read_curve_specs("fuzz.json", json);
     if (all.curves.empty()) throw std::logic_error("nothing was read");
     for (const CurveSpec& spec : all.curves) {
@@ -38,14 +38,7 @@ bool read(const std::string& json) {
       const double length = spec.plane ? spec.plane->length() : spec.space->length();
       if (!(length > 0.0) || !std::isfinite(length)) throw std::logic_error("no length");
     }
-    return true;
-  } catch (const InputError& error) {
-    const std::string what = error.what();
-    if (what.rfind("fuzz.json:", 0) != 0) throw std::logic_error("no place: " + what);
-    for (const char c : what)
-      if (static_cast<unsigned char>(c) < 32) throw std::logic_error("several lines: " + what);
-    return false;
-  }
+  });
 }
 
 TEST(CurveSpecs, SeedsAreRead) {
@@ -64,21 +57,7 @@ TEST(CurveSpecMutations, MutatedTextsAreReadOrRefused) {
                                           "=",       " ",           "\"reverse\":true,",
                                           "[0, 0]",  "from=1 ",     "0",
                                           "upper",   "\"weights\":"};
-  constexpr std::uint64_t seed_number = 20261128;
-  RandomStream random("curve spec mutations", seed_number);
-  std::size_t refused = 0;
-  constexpr std::size_t tries = 4000;
-  for (std::size_t i = 0; i < tries; ++i) {
-    const std::string json = test::mutated(seeds[i % seeds.size()], words, random);
-    try {
-      refused += read(json) ? 0 : 1;
-    } catch (const std::exception& error) {
-      FAIL() << "mutation " << i << " of seed " << seed_number << ": " << error.what() << "\n"
-             << json;
-    }
-  }
-  EXPECT_GT(refused, tries / 4);
-  EXPECT_GT(tries - refused, tries / 100);
+  test::try_mutations("curve spec mutations", 4000, seeds, words, read);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 
 #include "bezel/base/random.hpp"
 #include "tests/fuzz/bytes.hpp"
+#include "tests/fuzz/try_many.hpp"
 
 namespace bezel {
 namespace {
@@ -51,8 +52,10 @@ TEST(EvaluateFuzz, RandomBytesAreEvaluatedOrRefused) {
     bytes.resize(bytes.size() - random.below(9) % bytes.size());
     return bytes;
   };
-  fuzz::try_many(5000, std::chrono::seconds(3), make,
-                 [](const Bytes& bytes) { return evaluate_fuzz::evaluate_bytes(bytes); });
+  fuzz::try_many(
+      {5000, std::chrono::seconds(3), 0.02, 0.25}, make,
+      [](const Bytes& bytes) { return evaluate_fuzz::evaluate_bytes(bytes); },
+      [](const Bytes&) { return "of seed 1"; });
 }
 
 TEST(EvaluateFuzz, ShortInputs) {

@@ -14,6 +14,7 @@
 
 #include "bezel/base/random.hpp"
 #include "tests/fuzz/bytes.hpp"
+#include "tests/fuzz/try_many.hpp"
 
 namespace bezel {
 namespace {
@@ -58,8 +59,10 @@ TEST(IntersectFuzz, RandomBytesAreIntersectedOrRefused) {
       std::memcpy(bytes.data() + 3 + 16 * bytes[0], bytes.data() + 3, 16);
     return bytes;
   };
-  fuzz::try_many(4000, std::chrono::seconds(4), make,
-                 [](const Bytes& bytes) { return intersect_fuzz::intersect_bytes(bytes); });
+  fuzz::try_many(
+      {4000, std::chrono::seconds(4), 0.02, 0.25}, make,
+      [](const Bytes& bytes) { return intersect_fuzz::intersect_bytes(bytes); },
+      [](const Bytes&) { return "of seed 1"; });
 }
 
 TEST(IntersectFuzz, ShortInputs) {

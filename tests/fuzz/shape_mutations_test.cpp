@@ -85,9 +85,9 @@ TEST(Shapes, DegreesFollowFromTheCount) {
   }
 }
 
-/// @return whether it was read; anything but InputError with one line is thrown on
+/// @return whether it was read; test::read_or_refused
 bool read(const std::string& json) {
-  try {
+  return test::read_or_refused([&] {
     const Shapes all = read_shapes("fuzz.json", json);
     if (all.shapes.empty()) throw std::logic_error("nothing was read");
     for (const Shape& shape : all.shapes) {
@@ -102,14 +102,7 @@ bool read(const std::string& json) {
       if (a >= all.shapes.size() || b >= all.shapes.size() ||
           all.shapes[a].triangle != all.shapes[b].triangle)
         throw std::logic_error("a wrong pair");
-    return true;
-  } catch (const InputError& error) {
-    const std::string what = error.what();
-    if (what.rfind("fuzz.json:", 0) != 0) throw std::logic_error("no place: " + what);
-    for (const char c : what)
-      if (c < ' ' || c > '~') throw std::logic_error("a message that is not one line of text");
-    return false;
-  }
+  });
 }
 
 TEST(ShapeMutations, EveryTruncationIsRefused) {
@@ -150,21 +143,7 @@ TEST(ShapeMutations, MutatedTextsAreReadOrRefused) {
                                           "\"control\":",
                                           "{}",
                                           "[[[[[[[[[[[[[[[["};
-  constexpr std::uint64_t seed_number = 20261128;
-  RandomStream random("shape mutations", seed_number);
-  std::size_t refused = 0;
-  constexpr std::size_t tries = 60000;
-  for (std::size_t i = 0; i < tries; ++i) {
-    const std::string json = test::mutated(seeds[i % seeds.size()], words, random);
-    try {
-      refused += read(json) ? 0 : 1;
-    } catch (const std::exception& error) {
-      FAIL() << "mutation " << i << " of seed " << seed_number << ": " << error.what() << "\n"
-             << json;
-    }
-  }
-  EXPECT_GT(refused, tries / 4);
-  EXPECT_GT(tries - refused, tries / 100);
+  test::try_mutations("shape mutations", 60000, seeds, words, read);
 }
 
 // A name of any bytes; brackets without end.

@@ -8,9 +8,12 @@
 #include <string>
 
 #include "bezel/base/error.hpp"
+#include "support/message_of.hpp"
 
 namespace bezel {
 namespace {
+
+using test::message_of;
 
 namespace fs = std::filesystem;
 
@@ -30,16 +33,6 @@ class AtomicFileTest : public testing::Test {
   }
   fs::path folder_;
 };
-
-template <class Action>
-std::string input_error(Action&& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no InputError";
-}
 
 TEST_F(AtomicFileTest, AppearsOnlyOnCommit) {
   {
@@ -111,19 +104,19 @@ TEST_F(AtomicFileTest, TwoWritersDoNotMeet) {
 
 TEST_F(AtomicFileTest, SaysWhyItCannotWrite) {
   const std::string missing = path("no/x.vtu");
-  EXPECT_EQ(input_error([&] { AtomicFile file(missing); }),
+  EXPECT_EQ(message_of([&] { AtomicFile file(missing); }),
             missing + ": cannot be written: no such directory");
-  EXPECT_EQ(input_error([&] { AtomicFile file(folder_.string()); }),
+  EXPECT_EQ(message_of([&] { AtomicFile file(folder_.string()); }),
             folder_.string() + ": cannot be written: is a directory");
-  EXPECT_EQ(input_error([&] { AtomicFile file("/dev/null"); }),
+  EXPECT_EQ(message_of([&] { AtomicFile file("/dev/null"); }),
             "/dev/null: cannot be written: is not a regular file");
-  EXPECT_EQ(input_error([&] { AtomicFile file(""); }), "the output path is empty");
+  EXPECT_EQ(message_of([&] { AtomicFile file(""); }), "the output path is empty");
   write_file(path("file"), "");
-  EXPECT_EQ(input_error([&] { AtomicFile file(path("file/x")); }),
+  EXPECT_EQ(message_of([&] { AtomicFile file(path("file/x")); }),
             path("file/x") + ": cannot be written: no such directory");
   if (::geteuid() != 0) {
     ASSERT_EQ(::chmod(path("file").c_str(), 0444), 0);
-    EXPECT_EQ(input_error([&] { AtomicFile file(path("file")); }),
+    EXPECT_EQ(message_of([&] { AtomicFile file(path("file")); }),
               path("file") + ": cannot be written: permission denied");
   }
 }
@@ -135,7 +128,7 @@ TEST_F(AtomicFileTest, AFailingRenameLeavesNothing) {
   AtomicFile file(inner + "/x");
   file.write("y");
   fs::remove_all(inner);
-  EXPECT_EQ(input_error([&] { file.commit(); }),
+  EXPECT_EQ(message_of([&] { file.commit(); }),
             inner + "/x: cannot be written: no such file or directory");
   EXPECT_THROW(file.write("z"), InternalError);
   EXPECT_THROW(file.commit(), InternalError);
@@ -180,9 +173,9 @@ TEST_F(AtomicFileTest, ASetWhoseRenamingFailsLeavesNothing) {
 }
 
 TEST_F(AtomicFileTest, SaysWhyItCannotRead) {
-  EXPECT_EQ(input_error([&] { read_file(path("none")); }),
+  EXPECT_EQ(message_of([&] { read_file(path("none")); }),
             path("none") + ": cannot be read: no such file or directory");
-  EXPECT_EQ(input_error([&] { read_file(folder_.string()); }),
+  EXPECT_EQ(message_of([&] { read_file(folder_.string()); }),
             folder_.string() + ": cannot be read: is a directory");
   try {
     read_file(path("none"));

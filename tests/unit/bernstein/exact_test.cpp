@@ -51,6 +51,19 @@ TEST(ExactPolynomial, DerivativeAndRestriction) {
   EXPECT_TRUE(ExactPolynomial(Doubles{7.0}).derivative().is_zero());
 }
 
+TEST(ExactPolynomial, BisectionGivesBothHalves) {
+  const Doubles b{1.0, -0.75, 0.1, 3.0, -0x1p-60};
+  for (std::size_t d = 0; d < b.size(); ++d) {
+    std::vector<Dyadic> right(b.begin(), b.begin() + static_cast<std::ptrdiff_t>(d) + 1);
+    const ExactPolynomial p{std::span<const Dyadic>(right)};
+    std::vector<Dyadic> left = bisect_exactly(right);
+    for (auto* half : {&left, &right})
+      for (Dyadic& c : *half) c = c.scaled(-static_cast<std::int64_t>(d));
+    EXPECT_EQ(left, p.specialize(Dyadic(0.0), Dyadic(0.5))) << d;
+    EXPECT_EQ(right, p.specialize(Dyadic(0.5), Dyadic(1.0))) << d;
+  }
+}
+
 TEST(ExactPolynomial, BadCoefficients) {
   EXPECT_THAT(
       [] { ExactPolynomial{Doubles{}}; },

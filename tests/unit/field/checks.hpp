@@ -7,19 +7,11 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/formula/formula.hpp"
+#include "support/message_of.hpp"
 
 namespace bezel::field_test {
 
-/// what() of the InputError that action throws.
-template <class Action>
-std::string message_of(Action&& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
+using test::message_of;
 
 inline std::vector<Formula> formulas(std::initializer_list<const char*> texts) {
   std::vector<Formula> all;

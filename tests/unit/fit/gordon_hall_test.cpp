@@ -7,26 +7,18 @@
 #include <string>
 
 #include "bezel/base/error.hpp"
+#include "support/message_of.hpp"
 #include "support/quad_maps.hpp"
 
 namespace bezel {
 namespace {
 
 using std::numbers::pi;
+using test::message_of;
 using test::ring_map;
 using test::segment;
 using test::side;
 using test::straight_map;
-
-template <class Run>
-std::string message_of(const Run& run) {
-  try {
-    run();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 TEST(GordonHall, StraightSidesGiveTheBilinearMap) {
   const Vec2 a{0.1, 0.2}, b{2.1, 0.3}, c{1.9, 2.2}, d{0.4, 1.7};

@@ -8,23 +8,15 @@
 #include <vector>
 
 #include "bezel/base/error.hpp"
+#include "support/message_of.hpp"
 
 namespace {
 
 using bezel::CurveLocation;
 using bezel::locate;
 using bezel::Vec2;
+using bezel::test::message_of;
 using Points = std::vector<Vec2>;
-
-template <class F>
-std::string message_of(F&& f) {
-  try {
-    f();
-  } catch (const bezel::InputError& error) {
-    return error.what();
-  }
-  return "no InputError";
-}
 
 const Points parabola{{{0, 0}}, {{1, 2}}, {{2, 0}}};  // y = 2 x - x^2, x = 2 s
 const Points loop{{{0, 0}}, {{2, 1}}, {{-1, 1}}, {{1, 0}}};

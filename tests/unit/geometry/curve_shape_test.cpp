@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bezel/base/error.hpp"
+#include "support/message_of.hpp"
 
 namespace {
 
@@ -15,19 +16,10 @@ using bezel::Curve;
 using bezel::SpeedStatus;
 using bezel::Vec2;
 using bezel::WindingStatus;
+using bezel::test::message_of;
 using Points = std::vector<Vec2>;
 
 constexpr double u = 0x1p-53;
-
-template <class F>
-std::string message_of(F&& f) {
-  try {
-    f();
-  } catch (const bezel::InputError& error) {
-    return error.what();
-  }
-  return "no InputError";
-}
 
 const Points parabola{{{0, 0}}, {{1, 2}}, {{2, 0}}};  // y = 2 x - x^2, x = 2 s
 const Points cusp{{{0, 0}}, {{1, 1}}, {{0, 1}}, {{1, 0}}};

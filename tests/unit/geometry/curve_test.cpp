@@ -7,23 +7,15 @@
 #include <vector>
 
 #include "bezel/base/error.hpp"
+#include "support/message_of.hpp"
 
 namespace {
 
 using bezel::Curve;
 using bezel::intersect;
 using bezel::Vec2;
+using bezel::test::message_of;
 using Points = std::vector<Vec2>;
-
-template <class F>
-std::string message_of(F&& f) {
-  try {
-    f();
-  } catch (const bezel::InputError& error) {
-    return error.what();
-  }
-  return "no InputError";
-}
 
 TEST(CurveTest, EvaluatesItsEndsAndDerivative) {
   const Curve c({{{0, 0}}, {{1, 2}}, {{2, 0}}});

@@ -7,22 +7,14 @@
 #include <vector>
 
 #include "bezel/base/error.hpp"
+#include "support/message_of.hpp"
 
 namespace {
 
 using bezel::CurvedPolygon;
 using bezel::PointInPolygon;
 using bezel::Vec2;
-
-template <class F>
-std::string message_of(F&& f) {
-  try {
-    f();
-  } catch (const bezel::InputError& error) {
-    return error.what();
-  }
-  return "no InputError";
-}
+using bezel::test::message_of;
 
 /// Under the parabola y = 4 x (1 - x), over [0, 1].
 CurvedPolygon segment(double x = 0.0, double y = 0.0) {

@@ -9,9 +9,12 @@
 #include "bezel/base/error.hpp"
 #include "bezel/base/random.hpp"
 #include "bezel/bernstein/interval.hpp"
+#include "support/message_of.hpp"
 
 namespace bezel {
 namespace {
+
+using test::message_of;
 
 constexpr double u = 0x1p-53;
 
@@ -40,16 +43,6 @@ double magnitude(const std::vector<Vec2>& b) {
   double most = 0;
   for (const Vec2& p : b) most = std::max({most, std::fabs(p.x()), std::fabs(p.y())});
   return most;
-}
-
-template <class Run>
-std::string message_of(const Run& run) {
-  try {
-    run();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(Quadrilateral, ValueAndDerivativesOfABilinearMap) {

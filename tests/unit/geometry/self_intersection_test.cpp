@@ -8,24 +8,16 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/bernstein/interval.hpp"
+#include "support/message_of.hpp"
 
 namespace {
 
 using bezel::self_intersections;
 using bezel::Vec2;
+using bezel::test::message_of;
 using Points = std::vector<Vec2>;
 
 constexpr double u = 0x1p-53;
-
-template <class F>
-std::string message_of(F&& f) {
-  try {
-    f();
-  } catch (const bezel::InputError& error) {
-    return error.what();
-  }
-  return "no InputError";
-}
 
 /// Nothing at all but, perhaps, cusps and the joint.
 void expect_no_pairs(const bezel::SelfIntersections& found) {

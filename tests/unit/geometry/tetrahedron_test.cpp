@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bezel/base/error.hpp"
+#include "support/message_of.hpp"
 
 namespace {
 
@@ -16,18 +17,9 @@ using bezel::Lambda4;
 using bezel::Location;
 using bezel::Validity;
 using bezel::Vec3;
+using bezel::test::message_of;
 using Points = std::vector<Vec3>;
 namespace bern = bezel::bernstein;
-
-template <class F>
-std::string message_of(F&& f) {
-  try {
-    f();
-  } catch (const bezel::InputError& error) {
-    return error.what();
-  }
-  return "no InputError";
-}
 
 const Points unit{{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}};
 

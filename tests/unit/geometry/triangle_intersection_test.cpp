@@ -10,6 +10,7 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/geometry/triangle.hpp"
+#include "support/message_of.hpp"
 
 namespace {
 
@@ -19,6 +20,7 @@ using bezel::intersect;
 using bezel::PointInPolygon;
 using bezel::TriangleRelation;
 using bezel::Vec2;
+using bezel::test::message_of;
 using Points = std::vector<Vec2>;
 
 const Points unit{{{0, 0}}, {{1, 0}}, {{0, 1}}};
@@ -27,16 +29,6 @@ const Points curved{{{0, 0}}, {{0.5, -0.25}}, {{1, 0}}, {{0, 0.5}}, {{0.5, 0.5}}
 Points moved(Points p, double x, double y) {
   for (Vec2& c : p) c += Vec2{{x, y}};
   return p;
-}
-
-template <class F>
-std::string message_of(F&& f) {
-  try {
-    f();
-  } catch (const bezel::InputError& error) {
-    return error.what();
-  }
-  return "no InputError";
 }
 
 double total(const std::vector<CurvedPolygon>& polygons) {

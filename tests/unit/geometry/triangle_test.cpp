@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bezel/base/error.hpp"
+#include "support/message_of.hpp"
 
 namespace {
 
@@ -15,17 +16,8 @@ using bezel::Lambda;
 using bezel::Location;
 using bezel::Validity;
 using bezel::Vec2;
+using bezel::test::message_of;
 using Points = std::vector<Vec2>;
-
-template <class F>
-std::string message_of(F&& f) {
-  try {
-    f();
-  } catch (const bezel::InputError& error) {
-    return error.what();
-  }
-  return "no InputError";
-}
 
 const Points unit{{{0, 0}}, {{1, 0}}, {{0, 1}}};
 /// b(s, t) = [(1-s-t)^2 + s^2, s^2 + t^2], folded over itself [hermes2018, fig. 2.2].

@@ -7,22 +7,16 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/base/random.hpp"
+#include "support/message_of.hpp"
 
 namespace bezel {
 namespace {
 
+using test::message_of;
+
 std::string collection(const std::string& sets) {
   return "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n" +
          sets + "</Collection>\n</VTKFile>\n";
-}
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no InputError";
 }
 
 TEST(Pvd, WrittenAndReadAgainIsTheSame) {

@@ -8,10 +8,13 @@
 #include <string>
 
 #include "bezel/base/error.hpp"
+#include "support/message_of.hpp"
 #include "unit/mesh/mesh_checks.hpp"
 
 namespace bezel {
 namespace {
+
+using test::message_of;
 
 using namespace test;
 
@@ -239,15 +242,6 @@ TEST(Generate, JitterOfDegreeOneDoesNothing) {
   const auto mesh = generate_disc(1, options);
   EXPECT_TRUE(std::equal(plain.control().begin(), plain.control().end(), mesh.control().begin(),
                          mesh.control().end()));
-}
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(GenerateBadInput, Messages) {

@@ -8,12 +8,14 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/formula/formula.hpp"
+#include "support/message_of.hpp"
 #include "support/quad_maps.hpp"
 
 namespace bezel {
 namespace {
 
 using std::numbers::pi;
+using test::message_of;
 using test::ring_map;
 using test::segment;
 using test::side;
@@ -38,16 +40,6 @@ std::vector<GordonHall> grid(int cells, int degree) {
       maps.push_back(straight_map(degree, {i * h, j * h}, {(i + 1) * h, j * h},
                                   {(i + 1) * h, (j + 1) * h}, {i * h, (j + 1) * h}));
   return maps;
-}
-
-template <class Run>
-std::string message_of(const Run& run) {
-  try {
-    run();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(Spectral, EnergyErrorsOnTheSquare) {

@@ -5,12 +5,14 @@
 #include <functional>
 
 #include "support/meshes.hpp"
+#include "support/message_of.hpp"
 
 namespace bezel {
 namespace {
 
 using test::bend;
 using test::grid_mesh;
+using test::message_of;
 
 /// A mesh's arrays, owned.
 struct Arrays {
@@ -24,15 +26,6 @@ struct Arrays {
   std::vector<double> coordinates;
   std::vector<std::int32_t> connectivity;
 };
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no InputError";
-}
 
 TEST(TransferArrays, GivesTheBitsOfTheObjects) {
   const auto donor = grid_mesh(4, 2, 1.0, bend(0.15, 0.12));

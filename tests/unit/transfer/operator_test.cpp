@@ -10,12 +10,14 @@
 #include "bezel/base/atomic_file.hpp"
 #include "bezel/numeric/quadrature.hpp"
 #include "support/meshes.hpp"
+#include "support/message_of.hpp"
 
 namespace bezel {
 namespace {
 
 using test::bend;
 using test::grid_mesh;
+using test::message_of;
 using test::turn;
 
 Field random_field(const std::shared_ptr<const Space>& space, const char* stream,
@@ -255,15 +257,6 @@ TEST(TransferOperator, SpacesAreComparedByValue) {
     EXPECT_FALSE(move.accepts(*Space::discontinuous(copies.donor, 2, basis)));
     EXPECT_FALSE(move.accepts(*Space::discontinuous(meshes.target, 1, basis)));
   }
-}
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no InputError";
 }
 
 TEST(TransferOperatorErrors, NameWhatIsWrong) {

@@ -71,6 +71,18 @@ INSTANTIATE_TEST_SUITE_P(Meshes, ManyFields,
                          testing::Combine(testing::Values(1, 2, 3),
                                           testing::Values(Basis::physical, Basis::reference)));
 
+// The solves' time is an estimate from a sample, which a pause in it makes too long.
+TEST(Seconds, AreNotNegative) {
+  const auto donor = grid_mesh(5, 1, 1.0, bend(0.1, 0.08)),
+             target = grid_mesh(4, 1, 0.7, turn(0.4, 0.9));
+  const Field one("one", Space::discontinuous(donor, 0), std::vector<double>(50, 1.0));
+  for (int i = 0; i < 200; ++i) {
+    const TransferReport::Seconds took = transfer({&one, 1}, target).report.seconds;
+    ASSERT_GE(took.integrate, 0.0) << i;
+    ASSERT_GE(took.solve, 0.0) << i;
+  }
+}
+
 TEST(Ranges, HoldAllValuesAndAreAttainedUpToTheTolerance) {
   for (const Basis basis : {Basis::physical, Basis::reference}) {
     for (const int g : {1, 3}) {

@@ -9,6 +9,7 @@
 #include "bezel/mesh/generate.hpp"
 #include "support/fields.hpp"
 #include "support/meshes.hpp"
+#include "support/message_of.hpp"
 
 namespace bezel {
 namespace {
@@ -17,6 +18,7 @@ using test::bend;
 using test::checkerboard;
 using test::grid_mesh;
 using test::largest_difference;
+using test::message_of;
 using test::one;
 using test::same_place;
 using test::turn;
@@ -347,15 +349,6 @@ TEST(Transfer, ProgressEndsAtOneAndCanStopTheWork) {
   EXPECT_EQ(last, 1.0);
   EXPECT_THROW((void)transfer(std::span(&f, 1), target, {}, [](double) { return false; }),
                Interrupted);
-}
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no InputError";
 }
 
 TEST(TransferErrors, NameWhatIsWrong) {

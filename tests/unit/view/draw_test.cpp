@@ -1,7 +1,9 @@
 #include "bezel/view/draw.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <pugixml.hpp>
+#include <sstream>
 
 #include "bezel/base/atomic_file.hpp"
 #include "image.hpp"
@@ -154,6 +156,51 @@ TEST(Plot, DrawsSeriesOnLogarithmicAxes) {
   plot(scratch("plot.png"), {series}, options);
   EXPECT_EQ(test::Image(scratch("plot.png")).width, 800);
   EXPECT_EQ(message_of([&] { plot(path, {}); }), "nothing to plot: 0 series, expected at least 1");
+}
+
+/// The y of a text in an SVG file; NAN when there is none.
+double height_of(const pugi::xml_document& picture, const std::string& text) {
+  const auto found = picture.select_node(("//text[normalize-space(.)='" + text + "']").c_str());
+  return found.node().attribute("y").as_double(NAN);
+}
+/// The least y of the first line of a colour: the curve, which is drawn before the legend.
+double top_of(const pugi::xml_document& picture, const std::string& colour) {
+  std::istringstream d(picture.select_node(("//path[@stroke='" + colour + "']").c_str())
+                           .node()
+                           .attribute("d")
+                           .value());
+  double x = 0.0, y = 0.0, least = NAN;
+  for (char letter = ' '; d >> letter >> x >> y;) least = std::fmin(least, y);
+  return least;
+}
+
+// Where lines leave room the legend stands inside the frame, else in rows above it.
+TEST(Plot, LegendCoversNoLine) {
+  PlotOptions options;
+  options.title = "title";
+  std::vector<Series> series{{"the first", {0, 1, 2}, {0, 1, 2}, false, false, "#123456"}};
+  const std::string path = scratch("legend.svg");
+  plot(path, series, options);
+  pugi::xml_document picture;
+  ASSERT_TRUE(picture.load_file(path.c_str()));
+  EXPECT_GT(height_of(picture, "the first"), top_of(picture, "#123456"));
+  for (int i = 3; i <= 400; ++i) {
+    series[0].x.push_back(i);
+    series[0].y.push_back(2 * (i % 2));
+  }
+  series.resize(9, series[0]);
+  series[8].name = "the last one";
+  plot(path, series, options);
+  ASSERT_TRUE(picture.load_file(path.c_str()));
+  const double first = height_of(picture, "the first"), last = height_of(picture, "the last one");
+  EXPECT_GT(first, height_of(picture, "title") + 10.0);
+  EXPECT_GT(last, first + 15.0);  // another row
+  EXPECT_LT(last, top_of(picture, "#123456"));
+  // Where rows would take half of the picture, it stays inside.
+  options.height = 100;
+  plot(path, series, options);
+  ASSERT_TRUE(picture.load_file(path.c_str()));
+  EXPECT_LT(top_of(picture, "#123456"), 50.0);
 }
 
 // How often a text stands in a file.

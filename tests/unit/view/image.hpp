@@ -5,16 +5,15 @@
 #include <png.h>
 
 #include <array>
-
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "bezel/base/error.hpp"
 #include "bezel/view/colour.hpp"
+#include "support/message_of.hpp"
 
 namespace bezel::test {
 
@@ -52,15 +51,6 @@ inline std::string scratch(const std::string& name) {
       ("bezel_view_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
   std::filesystem::create_directories(folder);
   return (folder / name).string();
-}
-
-inline std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no InputError";
 }
 
 }  // namespace bezel::test

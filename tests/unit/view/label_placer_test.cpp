@@ -74,5 +74,51 @@ TEST(LabelPlacer, SomewhereEvenWhenAllIsCovered) {
   EXPECT_LT(norm(place.centre - Vec2{{200, 150}}), 60.0);
 }
 
+TEST(LabelPlacer, RoomAtSidePrefersCornersThenSides) {
+  const Vec2 box{{100, 60}};
+  LabelPlacer placer(frame);
+  EXPECT_EQ(placer.room_at_side(box, 10.0, 5.0).corner, (Vec2{{290, 10}}));
+  placer.avoid(std::array{Vec2{{380, 20}}});
+  EXPECT_EQ(placer.room_at_side(box, 10.0, 5.0).corner, (Vec2{{10, 10}}));
+  for (const Vec2& p : {Vec2{{20, 20}}, Vec2{{20, 280}}, Vec2{{380, 280}}})
+    placer.avoid(std::array{p});
+  const LabelPlacer::Room side = placer.room_at_side(box, 10.0, 5.0);
+  EXPECT_EQ(side.corner, (Vec2{{290, 120}}));
+  EXPECT_FALSE(side.covered);
+  // A cross, and all that is left is between a corner and the middle of a side.
+  LabelPlacer crossed(frame);
+  crossed.avoid(std::array{Vec2{{0, 150}}, Vec2{{400, 150}}});
+  crossed.avoid(std::array{Vec2{{200, 0}}, Vec2{{200, 300}}});
+  for (const Vec2& p : {Vec2{{12, 12}}, Vec2{{388, 12}}, Vec2{{12, 288}}, Vec2{{388, 288}}})
+    crossed.avoid(std::array{p});
+  const LabelPlacer::Room between = crossed.room_at_side(box, 10.0, 5.0);
+  EXPECT_FALSE(between.covered);
+  EXPECT_NE(between.corner.x(), 10.0);
+}
+
+// Whatever the lines: a place that covers nothing is said to, and holds no point of them.
+TEST(LabelPlacer, RoomAtSideCoversNoLineUnlessItSaysSo) {
+  RandomStream random("room at side", 1);
+  const Vec2 box{{130, 90}};
+  int clear = 0, covered = 0;
+  for (int run = 0; run < 200; ++run) {
+    LabelPlacer placer(frame);
+    std::vector<Vec2> line;
+    for (int i = 0; i < 2 + run / 20; ++i)
+      line.push_back(Vec2{{400.0 * random.uniform(), 300.0 * random.uniform()}});
+    placer.avoid(line);
+    const LabelPlacer::Room room = placer.room_at_side(box, 10.0, 5.0);
+    const Box2 place = box_of(room.corner, room.corner + box);
+    EXPECT_TRUE(frame.contains(place.lo) && frame.contains(place.hi));
+    ++(room.covered ? covered : clear);
+    if (room.covered) continue;
+    for (std::size_t i = 1; i < line.size(); ++i)
+      for (int k = 0; k <= 500; ++k)
+        ASSERT_FALSE(place.contains(line[i - 1] + (k / 500.0) * (line[i] - line[i - 1]))) << run;
+  }
+  EXPECT_GT(clear, 20);
+  EXPECT_GT(covered, 20);
+}
+
 }  // namespace
 }  // namespace bezel::view
