@@ -33,12 +33,12 @@ struct Share {
 /// Runs of chunks with about the same work: as many candidates for pairs, by their boxes. Some are
 /// empty when there are more shares than chunks.
 ///
-/// A donor element may matter to some target elements near each other when it meets their common
-/// box, or when it can be the nearest one to a point of the box: when it is no farther from the box
-/// than some donor corner is from the box's farthest point.
+/// A donor element may matter to a target element when their boxes meet, or when it can be the
+/// nearest one to a point of the target element's box: when it is no farther from the box than
+/// some donor corner is from the box's farthest point.
 /// @param count  at least 1; of the shares
-/// @cost   two queries of the donor's tree per 16 target elements, some 40 comparisons of boxes per
-///         element
+/// @cost   one query of the donor's tree per 32 target elements, where donors are not much larger
+///         (else per 8 another one), and some 50 comparisons of boxes per element
 std::vector<Share> split_work(const OverlayMesh& donor, const OverlayMesh& target,
                               const FrontSearch& search, std::size_t count, int threads);
 

@@ -15,9 +15,9 @@ namespace {
 constexpr double widening = 1e-6;
 /// Work of a target element besides its pairs, in candidates for pairs.
 constexpr double work_of_target = 1.0;
-/// Target elements whose donors the tree is asked for together, unless they lie far apart: their
-/// box is then this many times as large as their own boxes together.
-constexpr std::size_t area_size = 16;
+/// Target elements for which the tree is asked together, unless they lie far apart: their box is
+/// then this many times as large as their own boxes together.
+constexpr std::size_t area_size = 32;
 constexpr double far_apart = 1.5;
 /// Those whose donors are sought among these together.
 constexpr std::size_t group_size = 8;
@@ -78,9 +78,8 @@ class Needs {
     const Box2 box = box_of(elements);
     if (n > area_size || (n > 1 && are_far_apart(elements, box)))
       return add(elements.first(n / 2), list) + add(elements.subspan(n / 2), list);
-    search_.query(widened(box, 0.0), {}, memory_, near_);
-    if (near_.empty()) near_.push_back(search_.nearest(box.centre()));
-    search_.query(widened(box, reach(box, near_)), {}, memory_, area_);
+    pool_box_ = widened(box, 0.5 * box.diameter());
+    search_.query(pool_box_, {}, memory_, pool_);
     double work = 0.0;
     for (std::size_t i = 0; i < n; i += group_size)
       work += add_group(elements.subspan(i, std::min(group_size, n - i)), list);
@@ -116,44 +115,27 @@ class Needs {
     }
     out.resize(count);
   }
-  /// No point of the box is farther than this from the nearest of some donors.
-  double reach(const Box2& box, std::span<const std::int32_t> donors) const {
-    const double r = nearest_corner(donor_, donors, box.centre()) + 0.5 * box.diameter();
-    return r * (1.0 + widening);
-  }
-
-  /// The donors that may matter are in area_.
   double add_group(std::span<const std::int32_t> elements, std::vector<std::int32_t>& list) {
-    const Box2 box = box_of(elements);
-    select(area_, widened(box, 0.0), near_);
-    const double work =
-        static_cast<double>(elements.size()) * work_of_target + expected_pairs(elements, box);
-    select(area_, widened(box, reach(box, near_.empty() ? area_ : near_)), found_);
+    select(pool_, widened(box_of(elements), 0.0), near_);
+    double work = 0.0;
+    Box2 within;  // the donors that may matter meet this
+    for (const std::int32_t t : elements) {
+      const Box2& box = box_of(t);
+      select(near_, widened(box, 0.0), met_);
+      work += work_of_target + static_cast<double>(met_.size());
+      if (met_.empty()) met_.push_back(search_.nearest(box.centre()));
+      // No point of the box is farther than this from the nearest of them.
+      const double reach = nearest_corner(donor_, met_, box.centre()) + 0.5 * box.diameter();
+      within.include(widened(box, reach * (1.0 + widening)));
+    }
+    if (pool_box_.contains(within.lo) && pool_box_.contains(within.hi)) {
+      select(pool_, within, found_);
+    } else {
+      search_.query(within, {}, memory_, found_);
+    }
     for (const std::int32_t d : found_)
       if (marks_.take(d)) list.push_back(d);
     return work;
-  }
-
-  /// How many donor boxes the elements' boxes meet, when those that meet the box of all, near_, lie
-  /// about evenly and are of one size: as many as there are centres in a box that is larger by it.
-  double expected_pairs(std::span<const std::int32_t> elements, const Box2& box) const {
-    const auto count = static_cast<double>(near_.size());
-    if (near_.empty()) return 0.0;
-    Vec2 size;
-    for (const std::int32_t d : near_) {
-      const Box2& own = donor_.element_box[static_cast<std::size_t>(d)];
-      size += (own.hi - own.lo) * (1.0 / count);
-    }
-    const auto room = [&](const Box2& b) {
-      const Vec2 sum = b.hi - b.lo + size;
-      return sum[0] * sum[1];
-    };
-    double part = 0.0;
-    for (const std::int32_t t : elements) part += room(box_of(t));
-    const double expected = count * part / room(box);
-    // Also where products of sizes are out of range, and their quotient is no number.
-    const double most = count * static_cast<double>(elements.size());
-    return expected <= most ? expected : most;
   }
 
   const OverlayMesh& donor_;
@@ -161,7 +143,8 @@ class Needs {
   const FrontSearch& search_;
   Marks marks_;
   FrontSearch::Memory memory_;
-  std::vector<std::int32_t> near_, area_, found_;
+  Box2 pool_box_;
+  std::vector<std::int32_t> pool_, near_, met_, found_;  // pool_: those that meet pool_box_
 };
 
 /// The elements and those beyond their edges, ascending.
