@@ -138,14 +138,18 @@ void ElementTransfer::give_strips(std::int32_t t, const ElementPieces& own, std:
       }
       if (near != exterior) {
         given.area[entry] -= area;
-        for (std::size_t c = 0; c < components; ++c) given.mass[entry * components + c] -= mass[c];
+        if (mass_row_[k] >= 0) {
+          const auto row = static_cast<std::size_t>(mass_row_[k]) * components;
+          for (std::size_t c = 0; c < components; ++c) given.mass[row + c] -= mass[c];
+        }
       }
       if (far != exterior) {
         given.target.push_back(t);
         given.donor.push_back(far);
         given.area.push_back(area);
-        given.mass.insert(given.mass.end(), mass.begin() + static_cast<std::ptrdiff_t>(components),
-                          mass.end());
+        if (add_mass_row(given) >= 0)
+          given.mass.insert(given.mass.end(),
+                            mass.begin() + static_cast<std::ptrdiff_t>(components), mass.end());
       }
       for (std::size_t c = 0; c < components; ++c) {
         const double change = mass[components + c] - mass[c];

@@ -202,6 +202,7 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
                                     ElementOutcome& outcome) {
   area_.clear();
   bridged_.assign(own.donors.size(), 0);
+  plain_ = false;
   const auto note = [&](std::size_t k) {
     const std::int32_t d = own.donors[k];
     RunShape shape = run_shape(run_of(own, k));
@@ -231,6 +232,7 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
               own.donors.size(), batch_);
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
   const double own_size = target_.element_diameter[static_cast<std::size_t>(t)];
+  bool plain = true;
   for (std::size_t k = 0; k < own.donors.size(); ++k) {
     const std::int32_t d = own.donors[k];
     const double* sums = batch_.region(k);
@@ -252,6 +254,7 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
         continue;
       }
     }
+    plain = false;
     if (small || loose_ || !is_closed(t, d, gap)) {
       loose_ = loose_ || !is_closed(t, d, gap);
       note(k);
@@ -261,6 +264,7 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
     area_.push_back(area);
     note_region(t, d, area, gap, outcome);
   }
+  plain_ = plain && summed;
   return summed;
 }
 
@@ -274,23 +278,28 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
     region_sums(piece_table(target_.degree, 2 * degree), 2 * degree, origin_, place, own.pieces,
                 own.donors.size(), batch_);
   }
-  const auto size = static_cast<std::size_t>(bernstein::triangle_size(degree));
   const double* some = nullptr;
-  regions_.clear();
-  for (const std::int32_t d : own.donors) {
-    BatchRegion& region = regions_.emplace_back();
+  const std::size_t count = own.donors.size();
+  const std::size_t stride = static_cast<std::size_t>(bernstein::triangle_size(degree)) * nc;
+  if (regions_.size() < count) regions_.resize(2 * count);
+  for (std::size_t k = 0; k < count; ++k) {
+    BatchRegion& region = regions_[k];
     region.donor = nullptr;
+    region.far = false;
+    const std::int32_t d = own.donors[k];
     if (d == exterior) continue;
-    if (some == nullptr) some = g.donor_powers(d);
-    if (bridged_[regions_.size() - 1] != 0) continue;
+    const double* const powers = g.powers.data() + static_cast<std::size_t>(d) * stride;
+    if (some == nullptr) some = powers;
+    if (bridged_[k] != 0) continue;
     region.frame = &g.donor_frame[static_cast<std::size_t>(d)];
-    region.donor = g.donor_powers(d);
+    region.donor = powers;
   }
+  const std::span<BatchRegion> regions = std::span(regions_).first(count);
   // Constants come back whatever the rounding of the moments when they are not integrated at all.
   double* base = base_[i].data();
-  for (std::size_t c = 0; c < nc; ++c) base[c] = some != nullptr ? some[c * size] : 0.0;
+  for (std::size_t c = 0; c < nc; ++c) base[c] = some != nullptr ? some[c] : 0.0;
   Accumulators& sums = moment_sums_[i];
-  add_batch(degree, place, batch_, regions_, g.components, base, sums.product.data(),
+  add_batch(degree, place, batch_, regions, g.components, base, sums.product.data(),
             sums.basis.data(), mass.data());
   if (target_.degree > 1) {
     std::vector<double>& whole = whole_[i];
@@ -298,8 +307,8 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
     for (std::size_t k = 0; k < own.donors.size(); ++k)
       for (std::size_t n = 0; n < whole.size(); ++n) whole[n] += batch_.region(k)[n];
   }
-  for (std::size_t k = 0; k < regions_.size(); ++k) {
-    if (!regions_[k].far && (bridged_[k] == 0 || own.donors[k] == exterior)) continue;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!regions[k].far && (bridged_[k] == 0 || own.donors[k] == exterior)) continue;
     add_pair_moments(g, t, own.donors[k], run_shape(run_of(own, k)), base, sums,
                      mass.subspan(k * nc, nc));
   }

@@ -38,6 +38,7 @@ ElementTransfer::ElementTransfer(const OverlayMesh& donor, const OverlayMesh& ta
       moment_sums_(groups.size()),
       whole_(groups.size()),
       base_(groups.size()),
+      functions_(groups.size()),
       have_moments_(groups.size()),
       extended_(groups.size()),
       batched_(groups.size()),
@@ -47,10 +48,12 @@ ElementTransfer::ElementTransfer(const OverlayMesh& donor, const OverlayMesh& ta
     batched_[i] = can_batch(groups[i]) ? 1 : 0;
     fitted_[i] = batched_[i] == 0 && PairFit::can(groups[i], donor, target) ? 1 : 0;
   }
+  all_batched_ = std::find(batched_.begin(), batched_.end(), 0) == batched_.end();
 }
 
-void ElementTransfer::Accumulators::reset(std::size_t functions, std::size_t components) {
-  product.assign(functions * components, 0.0);
+void ElementTransfer::Accumulators::reset(std::size_t functions, std::size_t components,
+                                          std::size_t padding) {
+  product.assign(functions * components + padding, 0.0);
   basis.assign(functions, 0.0);
   mass.assign(components, 0.0);
 }
@@ -380,7 +383,8 @@ void ElementTransfer::choose_base(std::size_t i, const ElementPieces& own) {
 void ElementTransfer::begin_moments(std::size_t i) {
   if (have_moments_[i] != 0) return;
   have_moments_[i] = 1;
-  moment_sums_[i].reset(sums_[i].basis.size(), static_cast<std::size_t>(groups_[i].components));
+  moment_sums_[i].reset(functions_[i], static_cast<std::size_t>(groups_[i].components),
+                        batch_padding);
 }
 
 ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own, GivenList& given,
@@ -391,16 +395,15 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
   std::size_t components = 0;
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     const Group& g = groups_[i];
-    sums_[i].reset(
-        static_cast<std::size_t>(bernstein::triangle_size(g.target_space->degree(ElementId(t)))),
-        static_cast<std::size_t>(g.components));
+    functions_[i] =
+        static_cast<std::size_t>(bernstein::triangle_size(g.target_space->degree(ElementId(t))));
     components += static_cast<std::size_t>(g.components);
     have_moments_[i] = 0;
     extended_[i] = 0;
   }
   const auto corners = target_.corners(t);
   origin_ = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
-  masses_.assign(components, 0.0);
+  masses_.assign(components + batch_padding, 0.0);
 
   // The regions: shape and area do not depend on the fields.
   const bool batch =
@@ -412,40 +415,40 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
   have_segments_ = false;
   loose_ = own.loose();
   const bool summed = shape_regions(t, own, first_batched, outcome);
+  if (plain_ && all_batched_ && keeps_no_mass(own.donors)) {
+    process_plain(t, own, first_batched, given, outcome);
+    return outcome;
+  }
+  for (std::size_t i = 0; i < groups_.size(); ++i)
+    sums_[i].reset(functions_[i], static_cast<std::size_t>(groups_[i].components));
   double total = 0.0;
   double extended = 0.0;
-  const std::size_t regions = own.donors.size(), first_given = given.donor.size();
-  given.target.resize(first_given + regions, t);
-  given.donor.resize(first_given + regions);
-  given.area.resize(first_given + regions);
-  std::size_t pairs = first_given;
+  const std::size_t regions = own.donors.size();
+  mass_row_.resize(regions);
   for (std::size_t k = 0; k < regions; ++k) {
     const std::int32_t d = own.donors[k];
     const double area = area_[k];
     total += area;
+    mass_row_[k] = -1;
     if (d == exterior) {
       outcome.uncovered_area = std::max(area, 0.0);
       continue;
     }
     outcome.covered_area += area;
-    given.donor[pairs] = d;
-    given.area[pairs] = area;
-    ++pairs;
+    ++outcome.pairs;
+    given.target.push_back(t);
+    given.donor.push_back(d);
+    given.area.push_back(area);
+    mass_row_[k] = add_mass_row(given);
   }
-  if (pairs < first_given + regions) {
-    given.target.resize(pairs);
-    given.donor.resize(pairs);
-    given.area.resize(pairs);
-  }
-  outcome.pairs = static_cast<std::int32_t>(pairs - first_given);
-  given.mass.resize(pairs * components);
+  given.mass.resize(given.massed.size() * components);
 
   std::size_t c0 = 0;
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     const Group& g = groups_[i];
     const auto nc = static_cast<std::size_t>(g.components);
     region_mass_.assign(own.donors.size() * nc, 0.0);
-    base_[i].assign(nc, 0.0);
+    base_[i].assign(nc + batch_padding, 0.0);
     const bool batched = batch && batched_[i] != 0;
     if (batched) {
       begin_moments(i);
@@ -457,12 +460,11 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
     const bool fits = fitted && !loose_;
     if (fitted) {
       fit_.begin(i, g, t, all_runs(own), blocks == nullptr);
-      base_[i].assign(fit_.constants().begin(), fit_.constants().end());
+      std::copy(fit_.constants().begin(), fit_.constants().end(), base_[i].begin());
     } else if (!batched && blocks == nullptr) {
       choose_base(i, own);
     }
-    taken_ = base_[i];
-    double* to = given.mass.data() + first_given * components + c0;
+    taken_ = std::span(base_[i]).first(nc);
     for (std::size_t k = 0; k < own.donors.size(); ++k) {
       const std::int32_t d = own.donors[k];
       const double area = area_[k];
@@ -499,8 +501,11 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
       }
       for (std::size_t c = 0; c < nc; ++c) masses_[c0 + c] += here[c];
       if (d == exterior) continue;
-      for (std::size_t c = 0; c < nc; ++c) to[c] = here[c];
-      to += components;
+      if (mass_row_[k] >= 0)
+        std::copy(
+            here.begin(), here.end(),
+            given.mass.begin() + static_cast<std::ptrdiff_t>(
+                                     static_cast<std::size_t>(mass_row_[k]) * components + c0));
       if (blocks != nullptr) keep_pair(d, sums_[i], here, *blocks);
     }
     if (fits) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
@@ -509,16 +514,59 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
     c0 += nc;
   }
   if (loose_ && blocks == nullptr && components > 0) give_strips(t, own, components, given, made);
+  note_partition(t, total, outcome);
+  finish_groups(t, outcome.covered_area + extended, batch, blocks, outcome);
+  return outcome;
+}
+
+void ElementTransfer::note_partition(std::int32_t t, double total, ElementOutcome& outcome) const {
+  const double own_area = target_.element_area[static_cast<std::size_t>(t)];
   outcome.partition_residual = std::abs(total - own_area) / own_area;
   if (outcome.partition_residual > largest_joint_gap &&
       outcome.partition_residual > largest_partition_residual(t))
     outcome.inconsistent = true;
-  const double integrated = outcome.covered_area + extended;
+}
+
+bool ElementTransfer::keeps_no_mass(std::span<const std::int32_t> donors) const {
+  if (keep_masses_of_.empty()) return false;
+  std::uint8_t any = 0;
+  for (const std::int32_t d : donors) any |= keep_masses_of_[static_cast<std::size_t>(d)];
+  return any == 0;
+}
+
+void ElementTransfer::process_plain(std::int32_t t, const ElementPieces& own,
+                                    std::size_t first_batched, GivenList& given,
+                                    ElementOutcome& outcome) {
+  const std::size_t regions = own.donors.size();
+  given.target.insert(given.target.end(), regions, t);
+  given.donor.insert(given.donor.end(), own.donors.begin(), own.donors.end());
+  given.area.insert(given.area.end(), area_.begin(), area_.end());
+  outcome.pairs = static_cast<std::int32_t>(regions);
+  for (const double area : area_) outcome.covered_area += area;
+  masses_.clear();
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    const auto nc = static_cast<std::size_t>(groups_[i].components);
+    if (region_mass_.size() < regions * nc) region_mass_.resize(2 * regions * nc);
+    base_[i].resize(nc + batch_padding);
+    begin_moments(i);
+    add_batched(i, t, own, i == first_batched, region_mass_);
+    const std::size_t c0 = masses_.size();
+    masses_.resize(c0 + nc, 0.0);
+    for (std::size_t k = 0; k < regions; ++k)
+      for (std::size_t c = 0; c < nc; ++c) masses_[c0 + c] += region_mass_[k * nc + c];
+  }
+  masses_.resize(masses_.size() + batch_padding);
+  note_partition(t, outcome.covered_area, outcome);
+  finish_groups(t, outcome.covered_area, true, nullptr, outcome);
+}
+
+void ElementTransfer::finish_groups(std::int32_t t, double integrated, bool batch,
+                                    ElementBlocks* blocks, ElementOutcome& outcome) {
   // Reading the clock takes as long as a small solution: every so many elements are measured.
   const bool timed = elements_++ % timed_elements == 0;
   const auto start =
       timed ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
-  c0 = 0;
+  std::size_t c0 = 0;
   if (blocks != nullptr) finish_blocks(groups_[0], t, sums_[0], integrated, *blocks, outcome);
   for (std::size_t i = 0; i < groups_.size() && blocks == nullptr; ++i) {
     const auto nc = static_cast<std::size_t>(groups_[i].components);
@@ -526,7 +574,10 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
     const std::span<double> result = groups_[i].target_out(t);
     c0 += nc;
     if (finish_straight(i, t, mass, integrated, result, outcome)) continue;
-    if (have_moments_[i] != 0) moments_to_powers(i, t);
+    if (have_moments_[i] != 0) {
+      if (extended_[i] == 0) sums_[i].reset(functions_[i], nc);
+      moments_to_powers(i, t);
+    }
     std::span<const double> whole;
     if (outcome.uncovered_area == 0.0 && batch) whole = whole_[i];
     finish(groups_[i], t, sums_[i], whole, mass, base_[i], integrated, result, outcome);
@@ -536,7 +587,6 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
         static_cast<double>(timed_elements) *
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
-  return outcome;
 }
 
 }  // namespace bezel::detail

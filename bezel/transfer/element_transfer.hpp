@@ -34,13 +34,14 @@ struct ElementOutcome {
   bool inconsistent = false;  ///< the pieces around some T n D do not close
 };
 
-/// Masses and areas that donor elements gave, for the balance of what lies outside the target: one
+/// Areas that donor elements gave, and masses for the balance of what lies outside the target: one
 /// entry a pair.
 struct GivenList {
   std::vector<std::int32_t> donor;
-  std::vector<std::int32_t> target;  ///< filled by the caller of process()
+  std::vector<std::int32_t> target;
   std::vector<double> area;
-  std::vector<double> mass;  ///< per entry all groups' components in order
+  std::vector<std::int32_t> massed;  ///< entries whose masses are kept
+  std::vector<double> mass;          ///< per such entry all groups' components in order
 };
 
 /// The pairs of one target element kept apart: what each donor's basis functions give it.
@@ -67,6 +68,8 @@ class ElementTransfer {
   /// there instead of being added up.
   ElementOutcome process(std::int32_t t, const ElementPieces& own, GivenList& given,
                          std::span<double> made, ElementBlocks* blocks = nullptr);
+  /// From now on only masses given by these donor elements are kept (nonzero; empty: all).
+  void keep_masses_of(std::span<const std::uint8_t> donors) { keep_masses_of_ = donors; }
 
  private:
   struct Node {
@@ -75,7 +78,7 @@ class ElementTransfer {
   };
   struct Accumulators {
     std::vector<double> product, basis, mass;
-    void reset(std::size_t functions, std::size_t components);
+    void reset(std::size_t functions, std::size_t components, std::size_t padding = 0);
   };
   /// Cholesky factor of a target mass matrix, up to a factor of the matrix, the inverses of its
   /// diagonal, and integrals of the basis functions.
@@ -97,7 +100,23 @@ class ElementTransfer {
   double bridge_joints();
   /// Starts and steps of bridges_ in the plane.
   std::span<const std::array<Vec2, 2>> plane_bridges();
+  /// The ordinary case: all groups by moments, on closed regions that cover the element.
+  void process_plain(std::int32_t t, const ElementPieces& own, std::size_t first_batched,
+                     GivenList& given, ElementOutcome& outcome);
+  bool keeps_no_mass(std::span<const std::int32_t> donors) const;
+  void note_partition(std::int32_t t, double total, ElementOutcome& outcome) const;
+  void finish_groups(std::int32_t t, double integrated, bool batch, ElementBlocks* blocks,
+                     ElementOutcome& outcome);
   bool is_closed(std::int32_t t, std::int32_t d, double gap) const;
+  /// The row of the masses of the entry last added to the list, or -1 when they are not kept.
+  std::int32_t add_mass_row(GivenList& given) const {
+    const auto entry = given.donor.size() - 1;
+    if (!keep_masses_of_.empty() &&
+        keep_masses_of_[static_cast<std::size_t>(given.donor[entry])] == 0)
+      return -1;
+    given.massed.push_back(static_cast<std::int32_t>(entry));
+    return static_cast<std::int32_t>(given.massed.size() - 1);
+  }
   void give_strips(std::int32_t t, const ElementPieces& own, std::size_t components,
                    GivenList& given, std::span<double> made);
   double largest_partition_residual(std::int32_t t) const;
@@ -197,7 +216,9 @@ class ElementTransfer {
   const FrontSearch& search_;
   std::span<Group> groups_;
   Uncovered policy_;
-  std::uint64_t elements_ = 0;  // done so far
+  std::span<const std::uint8_t> keep_masses_of_;
+  std::vector<std::int32_t> mass_row_;  // by region: of the list of masses, or -1
+  std::uint64_t elements_ = 0;          // done so far
   std::vector<IntervalRule> rules_;
   std::vector<Node> nodes_;
   Vec2 origin_;  // of the pieces' control points, on the target element
@@ -217,7 +238,8 @@ class ElementTransfer {
   PieceBatch batch_;
   std::vector<BatchRegion> regions_;
   std::vector<double> area_;           // by region
-  std::vector<std::uint8_t> bridged_;  // by region: has bridges
+  bool plain_ = false;                 // all regions are closed, and none lacks a donor
+  std::vector<std::uint8_t> bridged_;  // by region: has bridges; all 0 when plain_
   std::vector<double> region_mass_;    // of one group, [region][component]
   std::vector<Segment> segments_;      // of this element, when have_segments_
   std::vector<std::size_t> run_end_;   // by region
@@ -235,9 +257,11 @@ class ElementTransfer {
   std::vector<double> shifted_;
   std::span<const double> taken_;           // base_ of the group at work
   std::vector<std::vector<double>> base_;   // by group, [component]: taken off before integrating
+  std::vector<std::size_t> functions_;      // by group: of the target element at work
   std::vector<std::uint8_t> have_moments_;  // by group: for this element
   std::vector<std::uint8_t> extended_;      // by group: sums_ hold what moment_sums_ lack
   std::vector<std::uint8_t> batched_;       // by group: goes by add_batched
+  bool all_batched_ = false;
   PairFit fit_;
   std::vector<std::uint8_t> fitted_;  // by group: goes by fit_
   std::vector<double> fitted_mass_;

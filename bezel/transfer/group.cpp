@@ -97,7 +97,7 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
 void Group::make_powers(std::size_t elements) {
   const auto nc = static_cast<std::size_t>(components);
   if (donor_mapped || target_mapped) return;
-  powers.assign(scaled.size() + donor_padding, 0.0);
+  powers.assign(scaled.size() + batch_padding, 0.0);
   for (std::size_t e = 0; e < elements; ++e) {
     const int degree = donor_space->degree(ElementId(e));
     if (degree > max_moment_degree) continue;
@@ -105,10 +105,10 @@ void Group::make_powers(std::size_t elements) {
     const auto size = static_cast<std::size_t>(bernstein::triangle_size(degree));
     const double* from = scaled.data() + donor_space->offset(ElementId(e)) * nc;
     double* to = powers.data() + donor_space->offset(ElementId(e)) * nc;
-    for (std::size_t c = 0; c < nc; ++c) {
-      for (std::size_t n = 0; n < size; ++n) {
-        const double value = from[c * size + n];
-        for (std::size_t m = 0; m < size; ++m) to[c * size + m] += value * matrix[n * size + m];
+    for (std::size_t n = 0; n < size; ++n) {
+      for (std::size_t m = 0; m < size; ++m) {
+        const double factor = matrix[n * size + m];
+        for (std::size_t c = 0; c < nc; ++c) to[m * nc + c] += factor * from[c * size + n];
       }
     }
   }

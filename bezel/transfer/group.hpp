@@ -54,7 +54,7 @@ struct Group {
                                           ///< [component][n]; of basis functions per degree
   std::vector<double> donor_integrals;    ///< of the donor's basis functions; not of basis groups
   std::vector<double> donor_mass;         ///< per element [component]
-  /// Coefficients of the monomials in the barycentrics less 1/3, per element [component][n]: of
+  /// Coefficients of the monomials in the barycentrics less 1/3, per element [n][component]: of
   /// donors that are not mapped and have at most max_moment_degree.
   std::vector<double> powers;
   std::vector<double> out;  ///< target coefficients, per element [n][component]

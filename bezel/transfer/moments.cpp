@@ -151,19 +151,21 @@ void add_region_of(const RegionPlace& place, const double* moments, int componen
     for (int a = 0; a <= P - b; ++a) g[at(P, a, b)] = moments[at(2 * P, a, b)];
   if constexpr (P > 0) move_integrals<P>(g, place.in_target[0], place.in_target[1]);
   for (int n = 0; n < size; ++n) basis[n] += g[n];
+  const Substitution<P, double> substitution(place.to_donor.data());
   for (int c = 0; c < components; ++c) {
     double f[size];
-    for (int n = 0; n < size; ++n) f[n] = donor[c * size + n];
+    for (int n = 0; n < size; ++n) f[n] = donor[n * components + c];
     f[0] -= base[c];
     if constexpr (P > 0) {
       move_polynomial<P>(f, place.in_donor[0], place.in_donor[1]);
-      substitute<P>(f, place.to_donor.data());
+      substitution.apply(f);
     }
     for (int b = 0; b <= P; ++b) {
       for (int a = 0; a <= P - b; ++a) {
         double sum = 0.0;
         for (int d = 0; d <= P; ++d)
-          for (int e = 0; e <= P - d; ++e) sum += moments[at(2 * P, a + e, b + d)] * f[at(P, e, d)];
+          for (int e = 0; e <= P - d; ++e)
+            sum = mul_add(moments[at(2 * P, a + e, b + d)], f[at(P, e, d)], sum);
         g[at(P, a, b)] = sum;
       }
     }

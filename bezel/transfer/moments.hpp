@@ -60,7 +60,7 @@ struct RegionPlace {
 ///   mass[c] = integral of f_c + base[c]; n in the order of triangle_index(degree, a, b),
 /// where f is the donor's polynomial less the constant base[c].
 /// @param moments  about the region's centre, up to degree 2 degree
-/// @param donor    coefficients of the donor's monomials, [component][n]
+/// @param donor    coefficients of the donor's monomials, [n][component]
 void add_region(int degree, const RegionPlace& place, const double* moments, int components,
                 const double* donor, const double* base, double* product, double* basis,
                 double* mass);

@@ -126,9 +126,10 @@ TransferOperator detail::OperatorBy::make(const Sweeper& sweeper,
   const auto columns = static_cast<std::size_t>(group.components);
   for (const std::int32_t d : swept.outside) {
     const std::size_t begin = static_cast<std::size_t>(d) * columns;
+    const std::span<const double> given = swept.given_by(d);
     std::vector<double> rest(size_on(*m.donor, d));
     for (std::size_t c = 0; c < rest.size(); ++c)
-      rest[c] = group.donor_mass[begin + c] - swept.given_mass[begin + c];
+      rest[c] = group.donor_mass[begin + c] - (given.empty() ? 0.0 : given[c]);
     m.outside.push_back(d);
     m.lost.push_back(std::move(rest));
   }

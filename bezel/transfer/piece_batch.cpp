@@ -53,9 +53,9 @@ HWY_INLINE void part_control(const Lanes* p, const Lanes& r, const Lanes& s, Lan
 #pragma GCC unroll 4
       for (int i = 0; i < G - level; ++i) {
         if (level < G - k)
-          q[i] = r_left * q[i] + r * q[i + 1];
+          q[i] = mul_add(r_left, q[i], r * q[i + 1]);
         else
-          q[i] = s_left * q[i] + s * q[i + 1];
+          q[i] = mul_add(s_left, q[i], s * q[i + 1]);
       }
     }
     out[k] = q[0];
@@ -99,8 +99,8 @@ HWY_INLINE void local_control(const PieceBatch& batch, std::size_t block, const 
     y = load(batch.y.data() + static_cast<std::size_t>(i) * batch.stride + block);
     x -= place.centre.x();
     y -= place.centre.y();
-    u[i] = place.first.x() * x + place.first.y() * y;
-    v[i] = place.second.x() * x + place.second.y() * y;
+    u[i] = mul_add(place.first.x(), x, place.first.y() * y);
+    v[i] = mul_add(place.second.x(), x, place.second.y() * y);
   }
   part_control<G>(u, from, to, a);
   part_control<G>(v, from, to, b);
@@ -125,8 +125,8 @@ void piece_moments_of(const PieceTable& table, const std::vector<double>& weight
       Lanes x, y, k;
       if constexpr (G == 1) {
         const double t = table.parameter[static_cast<std::size_t>(q)];
-        x = a[0] + t * (a[1] - a[0]);
-        y = b[0] + t * (b[1] - b[0]);
+        x = mul_add(t, a[1] - a[0], a[0]);
+        y = mul_add(t, b[1] - b[0], b[0]);
         k = table.weight[static_cast<std::size_t>(q)] * (a[0] * b[1] - b[0] * a[1]);
       } else {
         Lanes dx{}, dy{};
@@ -137,10 +137,10 @@ void piece_moments_of(const PieceTable& table, const std::vector<double>& weight
         for (int i = 0; i <= G; ++i) {
           const double f = value[static_cast<std::size_t>(i) * table.stride];
           const double d = slope[static_cast<std::size_t>(i) * table.stride];
-          x += f * a[i];
-          y += f * b[i];
-          dx += d * a[i];
-          dy += d * b[i];
+          x = mul_add(f, a[i], x);
+          y = mul_add(f, b[i], y);
+          dx = mul_add(d, a[i], dx);
+          dy = mul_add(d, b[i], dy);
         }
         k = x * dy - y * dx;
       }
@@ -262,23 +262,36 @@ HWY_INLINE void raise(Lanes& x, const Lanes& y) {
 
 alignas(64) constexpr double zeros[2 * lanes] = {};
 
-/// At most eight regions, one in each lane; the first is number `number` of the batch.
+/// Where at most eight regions lie in their donors' coordinates, one in each lane, and their
+/// moments; all zero for those that get nothing.
 template <int P>
-void add_regions(const TargetPlace& place, const PieceBatch& batch, std::size_t number,
-                 std::span<BatchRegion> regions, int components, const double* base,
-                 Lanes* total_basis, double* product, double* mass) {
-  constexpr int size = bernstein::triangle_size(P), twice = bernstein::triangle_size(2 * P);
-  constexpr std::size_t rows = padded_to_lanes(static_cast<std::size_t>(twice));
-  constexpr std::size_t donor_rows = padded_to_lanes(static_cast<std::size_t>(size));
-  static_assert(sizeof(Frame) == sizeof(Lanes));
+struct RegionLanes {
+  static constexpr int size = bernstein::triangle_size(P), twice = bernstein::triangle_size(2 * P);
+  Lanes moments[padded_to_lanes(static_cast<std::size_t>(twice))];
+  Lanes m[4], s, t;
+};
 
-  Lanes moments[rows];
+/// The same of one region.
+template <int P>
+struct RegionNumbers {
+  double moments[RegionLanes<P>::twice];
+  double m[4], s, t;
+  Substitution<P, double> substitution;
+};
+
+/// @param number  of the first region in the batch
+template <int P>
+HWY_INLINE void place_regions(const TargetPlace& place, const PieceBatch& batch, std::size_t number,
+                              std::span<BatchRegion> regions, Lanes* total_basis,
+                              RegionLanes<P>& out) {
+  static_assert(sizeof(Frame) == sizeof(Lanes));
+  constexpr std::size_t rows = padded_to_lanes(static_cast<std::size_t>(out.twice));
   alignas(64) double keep[lanes] = {};
 #pragma GCC unroll 4
   for (std::size_t m = 0; m < rows; m += lanes) {
     for (std::size_t l = 0; l < lanes; ++l)
-      moments[m + l] = load(l < regions.size() ? batch.region(number + l) + m : zeros);
-    transpose(moments + m);
+      out.moments[m + l] = load(l < regions.size() ? batch.region(number + l) + m : zeros);
+    transpose(out.moments + m);
   }
   // The donors' coordinates: centre x, y, then the gradients of the three barycentrics.
   Lanes frame[lanes];
@@ -296,7 +309,8 @@ void add_regions(const TargetPlace& place, const PieceBatch& batch, std::size_t 
                 frame[4] * place.along_second.x() + frame[5] * place.along_second.y(),
                 frame[6] * place.along_first.x() + frame[7] * place.along_first.y(),
                 frame[6] * place.along_second.x() + frame[7] * place.along_second.y()};
-  Lanes s = frame[4] * apart_x + frame[5] * apart_y, t = frame[6] * apart_x + frame[7] * apart_y;
+  const Lanes s = frame[4] * apart_x + frame[5] * apart_y,
+              t = frame[6] * apart_x + frame[7] * apart_y;
   Lanes slope{}, reach{};
   for (const Lanes& x : m) raise(slope, x);
   raise(reach, s);
@@ -308,84 +322,146 @@ void add_regions(const TargetPlace& place, const PieceBatch& batch, std::size_t 
   kept = load(keep);
   const auto near = (power <= steepest) & (kept > 0.0);
   const Lanes none{};
-  for (Lanes& x : m) x = near ? x : none;
-  s = near ? s : none;
-  t = near ? t : none;
+  for (int i = 0; i < 4; ++i) out.m[i] = near ? m[i] : none;
+  out.s = near ? s : none;
+  out.t = near ? t : none;
   const Lanes scale = near ? none + place.area : none;
   store(scale, keep);
   for (std::size_t l = 0; l < regions.size(); ++l)
     regions[l].far = regions[l].donor != nullptr && keep[l] == 0.0;
 #pragma GCC unroll 28
-  for (int n = 0; n < twice; ++n) moments[n] *= scale;
+  for (int n = 0; n < out.twice; ++n) out.moments[n] *= scale;
 #pragma GCC unroll 4
   for (int b = 0; b <= P; ++b) {
 #pragma GCC unroll 4
-    for (int a = 0; a <= P - b; ++a) total_basis[at(P, a, b)] += moments[at(2 * P, a, b)];
+    for (int a = 0; a <= P - b; ++a) total_basis[at(P, a, b)] += out.moments[at(2 * P, a, b)];
   }
+}
 
-  for (int c = 0; c < components; ++c) {
-    Lanes f[donor_rows];
-#pragma GCC unroll 2
-    for (std::size_t r = 0; r < donor_rows; r += lanes) {
-      for (std::size_t l = 0; l < lanes; ++l) {
-        const bool has = l < regions.size() && regions[l].donor != nullptr;
-        f[r + l] = load(has ? regions[l].donor + static_cast<std::size_t>(c * size) + r : zeros);
+/// sums[n] = integral of f m_n from the moments, both polynomials in the target's coordinates.
+template <int P, class S>
+HWY_INLINE void multiply(const S* moments, const Lanes* f, Lanes* sums) {
+#pragma GCC unroll 4
+  for (int b = 0; b <= P; ++b) {
+#pragma GCC unroll 4
+    for (int a = 0; a <= P - b; ++a) {
+      Lanes sum{};
+#pragma GCC unroll 4
+      for (int d = 0; d <= P; ++d) {
+#pragma GCC unroll 4
+        for (int e = 0; e <= P - d; ++e)
+          sum = mul_add(moments[at(2 * P, a + e, b + d)], f[at(P, e, d)], sum);
       }
-      transpose(f + r);
+      sums[at(P, a, b)] = sum;
     }
-    f[0] -= base[c];
-    if constexpr (P > 0) {
-      move_polynomial<P>(f, s, t);
-      substitute<P>(f, m);
-    }
-    Lanes sums[donor_rows] = {};
-#pragma GCC unroll 4
-    for (int b = 0; b <= P; ++b) {
-#pragma GCC unroll 4
-      for (int a = 0; a <= P - b; ++a) {
-        Lanes sum{};
-#pragma GCC unroll 4
-        for (int d = 0; d <= P; ++d) {
-#pragma GCC unroll 4
-          for (int e = 0; e <= P - d; ++e) sum += moments[at(2 * P, a + e, b + d)] * f[at(P, e, d)];
-        }
-        sums[at(P, a, b)] = sum;
-      }
-    }
-    alignas(64) double masses[lanes];
-    store(sums[0] + base[c] * moments[0], masses);
-    for (std::size_t l = 0; l < regions.size(); ++l)
-      mass[l * static_cast<std::size_t>(components) + static_cast<std::size_t>(c)] = masses[l];
+  }
+}
+
+/// One component of at most eight regions.
+template <int P>
+void add_regions(const RegionLanes<P>& place, std::span<const BatchRegion> regions, double base,
+                 double* product, double* mass) {
+  constexpr auto size = static_cast<std::size_t>(place.size);
+  constexpr std::size_t donor_rows = padded_to_lanes(size);
+  Lanes f[donor_rows];
 #pragma GCC unroll 2
-    for (std::size_t r = 0; r < donor_rows; r += lanes) {
-      transpose(sums + r);
-      alignas(64) double totals[lanes];
-      store(((sums[r] + sums[r + 4]) + (sums[r + 2] + sums[r + 6])) +
-                ((sums[r + 1] + sums[r + 5]) + (sums[r + 3] + sums[r + 7])),
-            totals);
-      for (std::size_t n = r; n < std::min<std::size_t>(r + lanes, size); ++n)
-        product[n * static_cast<std::size_t>(components) + static_cast<std::size_t>(c)] +=
-            totals[n - r];
+  for (std::size_t r = 0; r < donor_rows; r += lanes) {
+    for (std::size_t l = 0; l < lanes; ++l) {
+      const bool has = l < regions.size() && regions[l].donor != nullptr;
+      f[r + l] = load(has ? regions[l].donor + r : zeros);
+    }
+    transpose(f + r);
+  }
+  f[0] -= base;
+  if constexpr (P > 0) {
+    move_polynomial<P>(f, place.s, place.t);
+    Substitution<P, Lanes>(place.m).apply(f);
+  }
+  Lanes sums[donor_rows] = {};
+  multiply<P>(place.moments, f, sums);
+  alignas(64) double masses[lanes];
+  store(sums[0] + base * place.moments[0], masses);
+  for (std::size_t l = 0; l < regions.size(); ++l) mass[l] = masses[l];
+#pragma GCC unroll 2
+  for (std::size_t r = 0; r < donor_rows; r += lanes) {
+    transpose(sums + r);
+    Lanes total = sums[r];
+#pragma GCC unroll 8
+    for (std::size_t l = 1; l < lanes; ++l) total += sums[r + l];
+    alignas(64) double totals[lanes];
+    store(total, totals);
+    for (std::size_t n = r; n < std::min(r + lanes, size); ++n) product[n] += totals[n - r];
+  }
+}
+
+/// The same for several components, eight of them in the lanes: each has the bits that it has
+/// alone.
+template <int P>
+void add_components(const RegionLanes<P>& place, std::span<const BatchRegion> regions,
+                    std::size_t components, const double* base, double* product, double* mass) {
+  constexpr auto size = static_cast<std::size_t>(place.size);
+  std::array<RegionNumbers<P>, lanes> numbers;
+  for (std::size_t l = 0; l < regions.size(); ++l) {
+    const auto lane = [&](const Lanes& x) { return x[l]; };
+    RegionNumbers<P>& own = numbers[l];
+    for (int n = 0; n < place.twice; ++n) own.moments[n] = lane(place.moments[n]);
+    for (int i = 0; i < 4; ++i) own.m[i] = lane(place.m[i]);
+    own.s = lane(place.s);
+    own.t = lane(place.t);
+    if constexpr (P > 0) own.substitution = Substitution<P, double>(own.m);
+  }
+  for (std::size_t c = 0; c < components; c += lanes) {
+    const std::size_t count = std::min(lanes, components - c);
+    const Lanes off = load(base + c);
+    Lanes total[size] = {};
+    for (std::size_t l = 0; l < regions.size(); ++l) {
+      double* const own_mass = mass + l * components + c;
+      if (regions[l].donor == nullptr || regions[l].far) {
+        std::fill_n(own_mass, count, 0.0);
+        continue;
+      }
+      Lanes f[size], sums[size];
+#pragma GCC unroll 10
+      for (std::size_t n = 0; n < size; ++n) f[n] = load(regions[l].donor + n * components + c);
+      f[0] -= off;
+      const RegionNumbers<P>& own = numbers[l];
+      if constexpr (P > 0) {
+        move_polynomial<P>(f, own.s, own.t);
+        own.substitution.apply(f);
+      }
+      multiply<P>(own.moments, f, sums);
+      store_part(sums[0] + off * own.moments[0], own_mass, count);
+#pragma GCC unroll 10
+      for (std::size_t n = 0; n < size; ++n) total[n] += sums[n];
+    }
+    for (std::size_t n = 0; n < size; ++n) {
+      double* const to = product + n * components + c;
+      store_part(load(to) + total[n], to, count);
     }
   }
 }
 
 template <int P>
 void add_batch_of(const TargetPlace& place, const PieceBatch& batch, std::span<BatchRegion> regions,
-                  int components, const double* base, double* product, double* basis,
+                  std::size_t components, const double* base, double* product, double* basis,
                   double* mass) {
   constexpr int size = bernstein::triangle_size(P);
   Lanes total[size] = {};
   for (std::size_t first = 0; first < regions.size(); first += lanes) {
     const std::size_t count = std::min(lanes, regions.size() - first);
-    add_regions<P>(place, batch, first, regions.subspan(first, count), components, base, total,
-                   product, mass + first * static_cast<std::size_t>(components));
+    const std::span<BatchRegion> some = regions.subspan(first, count);
+    RegionLanes<P> placed;
+    place_regions<P>(place, batch, first, some, total, placed);
+    if (components == 1)
+      add_regions<P>(placed, some, *base, product, mass + first);
+    else
+      add_components<P>(placed, some, components, base, product, mass + first * components);
   }
   for (int n = 0; n < size; ++n) basis[n] += sum_of(total[n]);
 }
 
 void add_batch_target(int degree, const TargetPlace& place, const PieceBatch& batch,
-                      std::span<BatchRegion> regions, int components, const double* base,
+                      std::span<BatchRegion> regions, std::size_t components, const double* base,
                       double* product, double* basis, double* mass) {
   switch (degree) {
     case 0:
@@ -409,7 +485,7 @@ void apply_matrix_target(std::size_t size, std::size_t padded, const double* mat
       for (std::size_t b = 0; b < padded / lanes; ++b) {
         Lanes row;
         row = load(matrix + m * padded + b * lanes);
-        sums[b] += value * row;
+        sums[b] = mul_add(value, row, sums[b]);
       }
     }
     double result[most_blocks * lanes];
@@ -421,45 +497,96 @@ void apply_matrix_target(std::size_t size, std::size_t padded, const double* mat
 // Around the element's mean: what remains is small, so a constant comes back constant whatever the
 // rounding of the matrix.
 template <std::size_t blocks>
-double solve_straight_of(const StraightSystem& system, const double* matrix, double* coefficients) {
+double solve_one(const StraightSystem& system, const double* matrix, double* coefficients) {
   const auto size = static_cast<std::size_t>(bernstein::triangle_size(system.degree));
+  const double scale = 0.5 / system.area, per_function = system.area / static_cast<double>(size);
+  const double mass = *system.mass, mean = mass / system.covered;
+  const double rest = mean - *system.base;
+  Lanes x[blocks] = {};
+  for (std::size_t m = 0; m < size; ++m) {
+    const double value = (system.product[m] - rest * system.basis[m]) * scale;
+#pragma GCC unroll 2
+    for (std::size_t b = 0; b < blocks; ++b) {
+      Lanes row;
+      row = load(matrix + (m * blocks + b) * lanes);
+      x[b] = mul_add(value, row, x[b]);
+    }
+  }
+  double sum = sum_of(x[0]);
+  if constexpr (blocks > 1) sum += sum_of(x[1]);
+  const double got = sum * per_function + mean * system.area;
+  const double shift = mean + (mass - got) / system.area;
+  double values[blocks * lanes];
+#pragma GCC unroll 2
+  for (std::size_t b = 0; b < blocks; ++b) store(x[b] + shift, values + b * lanes);
+  sum = 0.0;
+  for (std::size_t n = 0; n < size; ++n) {
+    coefficients[n] = values[n];
+    sum += values[n];
+  }
+  return std::abs(mass - sum * per_function);
+}
+
+/// The same for several components, eight of them in the lanes: each has the bits that it has
+/// alone.
+template <int P>
+double solve_components(const StraightSystem& system, const double* matrix, double* coefficients) {
+  constexpr auto size = static_cast<std::size_t>(bernstein::triangle_size(P));
+  constexpr std::size_t padded = padded_to_lanes(size);
   const auto nc = static_cast<std::size_t>(system.components);
   const double scale = 0.5 / system.area, per_function = system.area / static_cast<double>(size);
   double largest = 0.0;
-  for (std::size_t c = 0; c < nc; ++c) {
-    const double mass = system.mass[c], mean = mass / system.covered;
-    const double rest = mean - system.base[c];
-    Lanes x[blocks] = {};
+  for (std::size_t c = 0; c < nc; c += lanes) {
+    const std::size_t count = std::min(lanes, nc - c);
+    const Lanes mass = load(system.mass + c), mean = mass / system.covered;
+    const Lanes rest = mean - load(system.base + c);
+    Lanes x[padded] = {};
+#pragma GCC unroll 10
     for (std::size_t m = 0; m < size; ++m) {
-      const double value = (system.product[m * nc + c] - rest * system.basis[m]) * scale;
-#pragma GCC unroll 2
-      for (std::size_t b = 0; b < blocks; ++b) {
-        Lanes row;
-        row = load(matrix + (m * blocks + b) * lanes);
-        x[b] += value * row;
-      }
+      const Lanes value = (load(system.product + m * nc + c) - rest * system.basis[m]) * scale;
+#pragma GCC unroll 10
+      for (std::size_t n = 0; n < size; ++n) x[n] = mul_add(matrix[m * padded + n], value, x[n]);
     }
-    double sum = sum_of(x[0]);
-    if constexpr (blocks > 1) sum += sum_of(x[1]);
-    const double got = sum * per_function + mean * system.area;
-    const double shift = mean + (mass - got) / system.area;
-    double values[blocks * lanes];
-#pragma GCC unroll 2
-    for (std::size_t b = 0; b < blocks; ++b) store(x[b] + shift, values + b * lanes);
-    sum = 0.0;
+    // In the order of sum_of().
+    const auto in_order = [](const Lanes* r) {
+      return ((r[0] + r[4]) + (r[2] + r[6])) + ((r[1] + r[5]) + (r[3] + r[7]));
+    };
+    Lanes sum = in_order(x);
+    if constexpr (padded > lanes) sum += in_order(x + lanes);
+    const Lanes got = sum * per_function + mean * system.area;
+    const Lanes shift = mean + (mass - got) / system.area;
+    sum = Lanes{};
+#pragma GCC unroll 10
     for (std::size_t n = 0; n < size; ++n) {
-      coefficients[n * nc + c] = values[n];
-      sum += values[n];
+      const Lanes value = x[n] + shift;
+      store_part(value, coefficients + n * nc + c, count);
+      sum += value;
     }
-    largest = std::max(largest, std::abs(mass - sum * per_function));
+    alignas(64) double defects[lanes];
+    store(mass - sum * per_function, defects);
+    for (std::size_t l = 0; l < count; ++l) largest = std::max(largest, std::abs(defects[l]));
   }
   return largest;
 }
 
+template <int P>
+double solve_straight_of(const StraightSystem& system, const double* matrix, double* coefficients) {
+  if (system.components == 1) return solve_one<(P < 3 ? 1 : 2)>(system, matrix, coefficients);
+  return solve_components<P>(system, matrix, coefficients);
+}
+
 double solve_straight_target(const StraightSystem& system, const double* matrix,
                              double* coefficients) {
-  return system.degree < 3 ? solve_straight_of<1>(system, matrix, coefficients)
-                           : solve_straight_of<2>(system, matrix, coefficients);
+  switch (system.degree) {
+    case 0:
+      return solve_straight_of<0>(system, matrix, coefficients);
+    case 1:
+      return solve_straight_of<1>(system, matrix, coefficients);
+    case 2:
+      return solve_straight_of<2>(system, matrix, coefficients);
+    default:
+      return solve_straight_of<3>(system, matrix, coefficients);
+  }
 }
 
 }  // namespace bezel::detail::HWY_NAMESPACE
@@ -564,7 +691,7 @@ void add_batch(int degree, const TargetPlace& place, const PieceBatch& batch,
                std::span<BatchRegion> regions, int components, const double* base, double* product,
                double* basis, double* mass) {
   HWY_DYNAMIC_DISPATCH(add_batch_target)
-  (degree, place, batch, regions, components, base, product, basis, mass);
+  (degree, place, batch, regions, static_cast<std::size_t>(components), base, product, basis, mass);
 }
 
 double solve_straight(const StraightSystem& system, double* coefficients) {

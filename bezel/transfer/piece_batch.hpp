@@ -59,23 +59,24 @@ void region_sums(const PieceTable& table, int degree, const Vec2& origin, const 
 /// A region that gets a donor's polynomial.
 struct BatchRegion {
   const Frame* frame;   ///< of the donor's polynomial
-  const double* donor;  ///< coefficients of the donor's monomials, [component][n], and as many
-                        ///< numbers more as may be read; nullptr: the region gets nothing
+  const double* donor;  ///< coefficients of the donor's monomials, [n][component], and
+                        ///< batch_padding numbers; nullptr: the region gets nothing
   bool far;  ///< out: not added, for the donor's polynomial is much steeper than the target's
 };
 
-/// Numbers behind a donor's coefficients that add_batch may read.
-inline constexpr std::size_t donor_padding = 16;
+/// Numbers behind those of donors, bases, masses and products that add_batch and solve_straight may
+/// read.
+inline constexpr std::size_t batch_padding = 16;
 
 /// add_region for the regions of a batch, about the target's centre, of the donors' polynomials
 /// less a constant; the masses are those of the whole polynomials.
-/// @param base  [component] the constants
+/// @param base  [component] the constants, and batch_padding numbers; likewise product
 /// @param mass  [region][component]
 void add_batch(int degree, const TargetPlace& place, const PieceBatch& batch,
                std::span<BatchRegion> regions, int components, const double* base, double* product,
                double* basis, double* mass);
 
-/// What solve_straight takes.
+/// What solve_straight takes: batch_padding numbers behind product, mass and base may be read.
 struct StraightSystem {
   int degree, components;
   double area;            ///< of the triangle

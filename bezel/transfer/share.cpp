@@ -130,6 +130,7 @@ void write_chunk(const ChunkResult& chunk, const OverlayMesh& donor, const Overl
   write_numbers(donor, chunk.given.donor, out);
   write_numbers(target, chunk.given.target, out);
   out.list(chunk.given.area);
+  out.list(chunk.given.massed);
   out.list(chunk.given.mass);
   out.value(chunk.counts);
   out.list(chunk.made);
@@ -155,6 +156,7 @@ ChunkResult read_chunk(MessageReader& in) {
   chunk.given.donor = in.list<std::int32_t>();
   chunk.given.target = in.list<std::int32_t>();
   chunk.given.area = in.list<double>();
+  chunk.given.massed = in.list<std::int32_t>();
   chunk.given.mass = in.list<double>();
   chunk.counts = in.value<OverlayCounts>();
   chunk.made = in.list<double>();

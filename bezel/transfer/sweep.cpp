@@ -65,6 +65,28 @@ class WorkerPool {
   std::vector<std::unique_ptr<Worker>> free_;
 };
 
+/// Nonzero for the donor elements that may lie partly outside the target mesh: those near its
+/// boundary. Of parts of meshes, whose boundaries say nothing, none: empty.
+std::vector<std::uint8_t> rim_donors(const OverlayMesh& donor, const OverlayMesh& target,
+                                     const FrontSearch& search) {
+  if (!donor.numbers.empty() || !target.numbers.empty()) return {};
+  std::vector<std::uint8_t> rim(donor.element_count(), 0);
+  FrontSearch::Memory memory;
+  std::vector<std::int32_t> near, found;
+  for (std::size_t e = 0; e < target.edge_sides.size(); ++e) {
+    const auto& sides = target.edge_sides[e];
+    if (sides[0] != exterior && sides[1] != exterior) continue;
+    Box2 box = target.edge_box[e];
+    const double room = 1e-9 * box.diameter();
+    box.lo -= Vec2{{room, room}};
+    box.hi += Vec2{{room, room}};
+    near.swap(found);
+    search.query(box, near, memory, found);
+    for (const std::int32_t d : found) rim[static_cast<std::size_t>(d)] = 1;
+  }
+  return rim;
+}
+
 std::string uncovered_message(const std::vector<std::pair<ElementId, double>>& elements,
                               double area) {
   std::string message = "the donor mesh does not cover the target mesh: area " +
@@ -94,12 +116,14 @@ std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayM
   std::vector<ChunkResult> results(chunks);
   WorkerPool pool(
       [&] { return std::make_unique<Worker>(donor, target, search, groups, options.uncovered); });
+  const std::vector<std::uint8_t> rim = rim_donors(donor, target, search);
   std::mutex progress_mutex;
   std::size_t chunks_done = 0;
   parallel_for(
       chunks,
       [&](std::size_t chunk) {
         auto worker = pool.take();
+        worker->element.keep_masses_of(rim);
         ChunkResult& result = results[chunk];
         result.made.assign(components, 0.0);
         std::vector<double> made_here;
@@ -159,17 +183,23 @@ Swept balance(std::span<const ChunkResult> chunks, std::span<const double> donor
   std::vector<double>& given_area = swept.given_area;
   std::vector<double>& given_mass = swept.given_mass;
   given_area.assign(donor_area.size(), 0.0);
-  given_mass.assign(donor_area.size() * components, 0.0);
+  swept.mass_row.assign(donor_area.size(), -1);
+  std::int32_t rows = 0;
   swept.made.assign(components, 0.0);
   std::int32_t inconsistent = -1;
   std::int64_t inconsistent_count = 0;
   for (const ChunkResult& r : chunks) {
-    for (std::size_t i = 0; i < r.given.donor.size(); ++i) {
-      const auto d = static_cast<std::size_t>(r.given.donor[i]);
-      given_area[d] += r.given.area[i];
-      for (std::size_t c = 0; c < components; ++c) {
-        given_mass[d * components + c] += r.given.mass[i * components + c];
+    for (std::size_t i = 0; i < r.given.donor.size(); ++i)
+      given_area[static_cast<std::size_t>(r.given.donor[i])] += r.given.area[i];
+    for (std::size_t i = 0; i < r.given.massed.size(); ++i) {
+      const auto entry = static_cast<std::size_t>(r.given.massed[i]);
+      std::int32_t& row = swept.mass_row[static_cast<std::size_t>(r.given.donor[entry])];
+      if (row < 0) {
+        row = rows++;
+        given_mass.resize(given_mass.size() + components, 0.0);
       }
+      double* const to = given_mass.data() + static_cast<std::size_t>(row) * components;
+      for (std::size_t c = 0; c < components; ++c) to[c] += r.given.mass[i * components + c];
     }
     for (std::size_t c = 0; c < components; ++c) swept.made[c] += r.made[c];
     report.pairs += r.counts.pairs;
@@ -208,6 +238,8 @@ Swept balance(std::span<const ChunkResult> chunks, std::span<const double> donor
   for (std::size_t d = 0; d < donor_area.size(); ++d) {
     const double rest = donor_area[d] - given_area[d];
     if (rest <= outside_rounding * donor_area[d]) continue;
+    // Not near the target's boundary: rounding, which shows in the mass.
+    if (given_area[d] != 0.0 && swept.mass_row[d] < 0) continue;
     report.outside_area += rest;
     swept.outside.push_back(static_cast<std::int32_t>(d));
   }

@@ -56,9 +56,17 @@ std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayM
 
 /// What a pass found.
 struct Swept {
-  TransferReport report;                       ///< all but the fields and the total time
-  std::vector<double> given_area, given_mass;  ///< per donor element (and component): in pairs
-  std::vector<double> made;                    ///< per component
+  TransferReport report;               ///< all but the fields and the total time
+  std::vector<double> given_area;      ///< per donor element
+  std::vector<std::int32_t> mass_row;  ///< per donor element: of given_mass, or -1
+  std::vector<double> given_mass;      ///< [row][component], of donors whose masses were kept
+  /// What a donor that lies partly outside gave in pairs; components() numbers.
+  std::span<const double> given_by(std::int32_t donor) const {
+    const std::int32_t row = mass_row[static_cast<std::size_t>(donor)];
+    return {given_mass.data() + static_cast<std::size_t>(row < 0 ? 0 : row) * made.size(),
+            row < 0 ? 0 : made.size()};
+  }
+  std::vector<double> made;           ///< per component
   std::vector<std::int32_t> outside;  ///< donor elements that lie partly outside the target
   double max_mass_defect = 0;
 };

@@ -176,11 +176,12 @@ TransferResult detail::transfer_by(const Crew& crew, std::span<const Field> dono
   std::vector<double> rest_mass(components);
   for (const std::int32_t id : swept.outside) {
     const auto d = static_cast<std::size_t>(id);
+    const std::span<const double> given = swept.given_by(id);
     std::size_t c0 = 0;
     for (const detail::Group& g : plan.groups) {
       const auto nc = static_cast<std::size_t>(g.components);
       for (std::size_t c = 0; c < nc; ++c) {
-        rest_mass[c0 + c] = g.donor_mass[d * nc + c] - swept.given_mass[d * components + c0 + c];
+        rest_mass[c0 + c] = g.donor_mass[d * nc + c] - (given.empty() ? 0.0 : given[c0 + c]);
         outside[c0 + c] += rest_mass[c0 + c];
       }
       c0 += nc;
