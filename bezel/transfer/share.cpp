@@ -220,6 +220,7 @@ ShareWriter::ShareWriter(const OverlayMesh& donor, const OverlayMesh& target,
       groups_(groups),
       options_(options),
       blocks_(blocks),
+      rim_(rim_donors(donor, target, search)),
       donor_place_(donor.mesh->node_count(), -1),
       target_place_(target.mesh->node_count(), -1),
       element_place_(target.element_count(), -1) {}
@@ -229,6 +230,9 @@ void ShareWriter::write(const Share& share, MessageWriter& out) {
   out.value(options_.uncovered);
   out.value(options_.conserve);
   write_mesh(*donor_.mesh, share.donors, donor_place_, out);
+  std::vector<std::uint8_t> rim;
+  for (const std::int32_t d : share.donors) rim.push_back(rim_[place(d)]);
+  out.list(rim);
   out.value(search_.connected());
   write_mesh(*target_.mesh, share.targets, target_place_, out);
   note_places(share.targets, element_place_);
@@ -248,6 +252,7 @@ ShareReport work_on(MessageReader& in, int threads, MessageWriter& out) {
   options.uncovered = in.value<Uncovered>();
   options.conserve = in.value<Conserve>();
   MeshPart donor_part = read_mesh(in);
+  const std::vector<std::uint8_t> rim = in.list<std::uint8_t>();
   const bool connected = in.value<bool>();
   MeshPart target_part = read_mesh(in);
   const std::vector<std::int32_t> own = in.list<std::int32_t>();
@@ -272,7 +277,7 @@ ShareReport work_on(MessageReader& in, int threads, MessageWriter& out) {
     };
   }
   const std::vector<ChunkResult> chunks =
-      sweep_elements(donor, target, search, groups, own, options, {}, visit);
+      sweep_elements(donor, target, search, groups, own, options, {}, visit, rim);
   for (const ChunkResult& chunk : chunks) {
     work.pairs += chunk.counts.pairs;
     write_chunk(chunk, donor, target, out);

@@ -58,6 +58,7 @@ class ShareWriter {
   std::span<const Group> groups_;
   const TransferOptions& options_;
   bool blocks_;
+  std::vector<std::uint8_t> rim_;  // per donor element of the whole
   // Per node or element of the whole its place in the part; -1: not in it.
   std::vector<std::int32_t> donor_place_, target_place_, element_place_;
 };

@@ -47,12 +47,19 @@ using VisitBlocks =
 /// What a chunk leaves depends on its own elements and the donors near them only: a part of
 /// OverlayMesh::spatial_order() that begins at a multiple of chunk_size gives the bits of the
 /// whole.
+/// @param part_rim  on parts of meshes: rim_donors() of the whole ones
 /// @throws NumericsError where a mass matrix is singular
 std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayMesh& target,
                                         const FrontSearch& search, std::span<Group> groups,
                                         std::span<const std::int32_t> elements,
                                         const TransferOptions& options, const Progress& progress,
-                                        const VisitBlocks& visit = {});
+                                        const VisitBlocks& visit = {},
+                                        std::span<const std::uint8_t> part_rim = {});
+
+/// Per donor element, nonzero for those that may lie partly outside the target mesh: near its
+/// boundary. Of whole meshes.
+std::vector<std::uint8_t> rim_donors(const OverlayMesh& donor, const OverlayMesh& target,
+                                     const FrontSearch& search);
 
 /// What a pass found.
 struct Swept {
