@@ -96,7 +96,30 @@ class FootSearch {
   int count_ = 0, work_ = 0;
 };
 
+/// Whether p may lie within tau of the curve, by its box and the band around its chord.
+bool is_near(const Vec2& p, const CurveCache& curve, double tau) {
+  if (p.x() < curve.box.lo.x() - tau || p.x() > curve.box.hi.x() + tau ||
+      p.y() < curve.box.lo.y() - tau || p.y() > curve.box.hi.y() + tau)
+    return false;
+  const double slack = tau * curve.chord_length;
+  const double height = cross(curve.chord, p - curve.control.front());
+  const double size = 0x1p-50 * curve.chord_length * curve.box.diameter();
+  return height >= curve.band_lo - slack - size && height <= curve.band_hi + slack + size;
+}
+
 }  // namespace
+
+int inner_feet(const Vec2& p, const CurveCache& curve, double tau, std::array<double, 4>& feet) {
+  if (!is_near(p, curve, tau)) return 0;
+  const int degree = static_cast<int>(curve.control.size()) - 1;
+  PointBuffer<max_curve_points> buffer;
+  Vec2* shifted = buffer.data();
+  for (int i = 0; i <= degree; ++i) shifted[i] = curve.control[static_cast<std::size_t>(i)] - p;
+  FootSearch search(degree, curve.control.data(), p, tau);
+  search.descend(shifted, 0.0, 1.0, 0);
+  for (int i = 0; i < search.count(); ++i) feet[static_cast<std::size_t>(i)] = search[i];
+  return search.count();
+}
 
 /// All control points coincide to rounding: the curve counts as its point at parameter 0.
 bool IntersectSearch::is_point(const CurveCache& curve) const {
@@ -119,13 +142,7 @@ void IntersectSearch::add_contact(double s, double t, bool a_end, bool b_end) {
 
 void IntersectSearch::find_contact(const Vec2& p, const CurveCache& curve, bool of_a, double end) {
   const double tau = tau_;
-  if (p.x() < curve.box.lo.x() - tau || p.x() > curve.box.hi.x() + tau ||
-      p.y() < curve.box.lo.y() - tau || p.y() > curve.box.hi.y() + tau)
-    return;
-  const double slack = tau * curve.chord_length;
-  const double height = cross(curve.chord, p - curve.control.front());
-  const double size = 0x1p-50 * curve.chord_length * curve.box.diameter();
-  if (height < curve.band_lo - slack - size || height > curve.band_hi + slack + size) return;
+  if (!is_near(p, curve, tau)) return;
   const auto add = [&](double other, bool is_end) {
     if (of_a)
       add_contact(end, other, true, is_end);
@@ -142,20 +159,17 @@ void IntersectSearch::find_contact(const Vec2& p, const CurveCache& curve, bool 
   if (at_last) add(1.0, true);
   // A straight curve that has p at an end has it nowhere else.
   if (degree == 1 && (at_first || at_last)) return;
-  PointBuffer<max_curve_points> buffer;
-  Vec2* shifted = buffer.data();
-  for (int i = 0; i <= degree; ++i) shifted[i] = curve.control[static_cast<std::size_t>(i)] - p;
   if (at_first || at_last) {
     // Only a curve that turns back can meet p again.
     bool turns = at_first && at_last;
-    for (int i = 0; i < degree && !turns; ++i)
-      turns = dot(curve.chord, shifted[i + 1] - shifted[i]) <= 0;
+    for (std::size_t i = 0; i + 1 < curve.control.size() && !turns; ++i)
+      turns = dot(curve.chord, curve.control[i + 1] - curve.control[i]) <= 0;
     if (!turns) return;
   }
-  FootSearch search(degree, curve.control.data(), p, tau);
-  search.descend(shifted, 0.0, 1.0, 0);
-  for (int i = 0; i < search.count(); ++i) {
-    const double s = search[i];
+  std::array<double, 4> feet;
+  const int count = inner_feet(p, curve, tau, feet);
+  for (int i = 0; i < count; ++i) {
+    const double s = feet[static_cast<std::size_t>(i)];
     const Vec2 q = curve_point(degree, curve.control.data(), s).value;
     if (at_first && norm(q - curve.control.front()) <= 4 * tau && s < 0.5) continue;
     if (at_last && norm(q - curve.control.back()) <= 4 * tau && s > 0.5) continue;
@@ -229,10 +243,8 @@ bool IntersectSearch::find_overlaps() {
     if (!coincide(p, q, gap)) continue;
     out_.overlaps.push_back({p.s, q.s, p.t, q.t, gap});
     const bool whole_a = p.s == 0.0 && q.s == 1.0;
-    const bool whole_b = std::min(p.t, q.t) == 0.0 && std::max(p.t, q.t) == 1.0;
-    if (!whole_a && !whole_b) continue;
-    // When neither curve turns by a right angle they are graphs over one direction and meet nowhere
-    // else.
+    // When neither curve turns by a right angle they are graphs over one direction. At each end of
+    // the overlap one of them ends, so at most one goes on there, and they meet nowhere else.
     const Vec2 direction = whole_a ? cb_.chord : ca_.chord;
     bool graph = true;
     int sign = 0;

@@ -48,6 +48,10 @@ struct CurvePiece {
   double extent() const { return std::max(box_hi_x - box_lo_x, box_hi_y - box_lo_y); }
 };
 
+/// Parameters in (0, 1) where the curve passes within tau of p; bits that depend on these alone.
+/// @return  how many, at most four
+int inner_feet(const Vec2& p, const CurveCache& curve, double tau, std::array<double, 4>& feet);
+
 class IntersectSearch {
  public:
   IntersectSearch(const CurveCache& a, const CurveCache& b, const IntersectOptions& options,

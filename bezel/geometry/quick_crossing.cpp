@@ -56,8 +56,9 @@ Meeting meet(const CurveCache& a, const CurveCache& b, double distance, QuickCro
   // With derivatives u + alpha u', v + beta v' (u' is u turned by 90 degrees, the same for v):
   // cross = cross(u, v) (1 + alpha beta) + dot(u, v) (beta - alpha), extreme where both are.
   const double sine = cross(a.chord, b.chord);
-  const double least = least_sine * a.chord_length * b.chord_length;
+  const double lengths = a.chord_length * b.chord_length, least = least_sine * lengths;
   bool positive = sine > 0;
+  double smallest = std::fabs(sine);  // cross product seen
   if constexpr (M == 1 && N == 1) {
     if (!(std::fabs(sine) >= least)) return Meeting::unclear;
   } else {
@@ -69,11 +70,12 @@ Meeting meet(const CurveCache& a, const CurveCache& b, double distance, QuickCro
         const double value = sine * (1.0 + alpha * beta) + cosine * (beta - alpha);
         // The derivatives' lengths are at most sqrt(2) chords.
         if (!(std::fabs(value) >= 2.0 * least) || (value > 0) != positive) return Meeting::unclear;
+        smallest = std::min(smallest, 0.5 * std::fabs(value));
       }
     }
   }
   // An end is far enough from the other curve when its parameter is off by end_margin.
-  if (!(distance < 0.1 * end_margin * least_sine * std::min(a.diameter, b.diameter)))
+  if (!(distance * lengths < 0.1 * end_margin * smallest * std::min(a.diameter, b.diameter)))
     return Meeting::unclear;
 
   double s = a_first / (a_first - a_last);

@@ -7,8 +7,18 @@
 #include <tuple>
 
 #include "bezel/base/error.hpp"
+#include "bezel/geometry/quick_crossing.hpp"
+#include "bezel/geometry/quick_ends.hpp"
 
 namespace bezel::detail {
+
+using geometry_kernel::EndMeeting;
+using geometry_kernel::meet_at_ends;
+using geometry_kernel::meet_quickly;
+using geometry_kernel::Meeting;
+using geometry_kernel::QuickCrossing;
+using geometry_kernel::QuickEnds;
+
 namespace {
 
 /// sin(angle) below which a crossing's direction is not relied on.
@@ -28,21 +38,28 @@ ElementOverlay::ElementOverlay(const OverlayMesh& donor, const OverlayMesh& targ
       target_(target),
       search_(search),
       record_place_(target.edge_box.size()),
-      vertex_place_(target.mesh->node_count()),
-      walk_stamp_(donor.edge_box.size(), 0),
-      first_mark_(donor.edge_box.size(), -1),
+      vertex_place_(target.mesh->node_count(), unlocated),
+      inner_place_(donor.edge_box.size()),
       inside_stamp_(donor.mesh->node_count(), 0),
       edge_stamp_(donor.edge_box.size(), 0),
       group_(donor.element_count() + 1) {}
 
-void ElementOverlay::begin_chunk() {
+void ElementOverlay::begin_chunk(std::span<const std::int32_t> elements) {
   ++chunk_;
   records_.clear();
+  details_.clear();
+  step_count_ = 0;
   contacts_.clear();
   coincidences_.clear();
   pieces_.clear();
   candidates_.clear();
   candidates_of_ = -1;
+  if (!is_straight()) return;
+  for (const std::int32_t t : elements) {
+    for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)])
+      record_of(side.edge.value);
+  }
+  walk_straight_edges(0);
 }
 
 void ElementOverlay::find_candidates(std::int32_t t) {
@@ -114,13 +131,49 @@ bool ElementOverlay::inside_target(std::int32_t t, std::span<const Vec2> curve, 
   return answer;
 }
 
-void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
+bool ElementOverlay::meet_ordinarily(const CurveCache& curve, const CurveCache& other,
+                                     double distance, std::int32_t donor_edge, Record& record) {
+  QuickCrossing crossing{};
+  switch (meet_quickly(curve, other, distance, crossing)) {
+    case Meeting::none:
+      return true;
+    case Meeting::crossing:
+      contacts_.push_back(
+          {crossing.s, crossing.t, donor_edge, static_cast<std::int8_t>(crossing.sign)});
+      record.gap = std::max(record.gap, crossing.gap);
+      ++record.crossings;
+      return true;
+    case Meeting::unclear:
+      break;
+  }
+  QuickEnds ends{};
+  switch (meet_at_ends(curve, other, distance, ends)) {
+    case EndMeeting::point:
+      contacts_.push_back({ends.s, ends.t, donor_edge, 0});
+      record.gap = std::max(record.gap, ends.gap);
+      ++record.crossings;
+      return true;
+    case EndMeeting::part:
+      coincidences_.push_back(
+          {ends.s, ends.s_end, ends.t, ends.t_end, donor_edge,
+           ends.gap > point_rounding * std::max(curve.magnitude, other.magnitude)});
+      ++details_of(record).overlaps;
+      return true;
+    case EndMeeting::unclear:
+      break;
+  }
+  return false;
+}
+
+void ElementOverlay::overlay_edge(Record& record) {
+  const std::int32_t edge = record.edge;
   const auto curve = target_.edge(edge);
   Box2 box = target_.edge_box[static_cast<std::size_t>(edge)];
-  record = Record{};
-  record.contact_begin = static_cast<std::uint32_t>(contacts_.size());
-  record.coincidence_begin = static_cast<std::uint32_t>(coincidences_.size());
-  record.piece_begin = static_cast<std::uint32_t>(pieces_.size());
+  record.details = static_cast<std::int32_t>(details_.size());
+  Details& details = details_.emplace_back();
+  details.contact_begin = static_cast<std::uint32_t>(contacts_.size());
+  details.coincidence_begin = static_cast<std::uint32_t>(coincidences_.size());
+  details.piece_begin = static_cast<std::uint32_t>(pieces_.size());
 
   const CurveCache& own = target_.edge_cache[static_cast<std::size_t>(edge)];
   Box2 generous = box;
@@ -140,6 +193,7 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
     wide.lo -= room;
     wide.hi += room;
     if (!wide.overlaps(other)) continue;
+    if (meet_ordinarily(own, facing, distance, e, record)) continue;
     IntersectOptions options;
     options.coincidence_distance = distance;
     const auto donor_curve = donor_.edge(e);
@@ -165,23 +219,23 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
     }
     for (const Tangency& c : found_.tangencies) {
       contacts_.push_back({c.s, opposite(c.s, c.t), e, 0});
-      ++record.tangencies;
+      ++details.tangencies;
     }
     for (const Overlap& c : found_.overlaps) {
       coincidences_.push_back({c.s0, c.s1, opposite(c.s0, c.t0), opposite(c.s1, c.t1), e,
                                c.gap > point_rounding * std::max(own.magnitude, facing.magnitude)});
-      ++record.overlaps;
+      ++details.overlaps;
     }
     for (const UnresolvedBox& c : found_.unresolved) {
       contacts_.push_back({0.5 * (c.s_lo + c.s_hi), 0.5 * (c.t_lo + c.t_hi), e, 0});
-      ++record.unresolved;
+      ++details.unresolved;
     }
   }
   record.gap /= std::max(own.diameter, 1e-300);
-  record.contact_end = static_cast<std::uint32_t>(contacts_.size());
-  record.coincidence_end = static_cast<std::uint32_t>(coincidences_.size());
-  const auto contacts = std::span(contacts_).subspan(record.contact_begin);
-  const auto coincidences = std::span(coincidences_).subspan(record.coincidence_begin);
+  details.contact_end = static_cast<std::uint32_t>(contacts_.size());
+  details.coincidence_end = static_cast<std::uint32_t>(coincidences_.size());
+  const auto contacts = std::span(contacts_).subspan(details.contact_begin);
+  const auto coincidences = std::span(coincidences_).subspan(details.coincidence_begin);
   std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) {
     return std::tie(a.r, a.donor_edge, a.s) < std::tie(b.r, b.donor_edge, b.s);
   });
@@ -220,7 +274,7 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
     const double middle = 0.5 * (piece.r0 + piece.r1);
     for (std::size_t k = 0; k < coincidences.size(); ++k) {
       if (coincidences[k].r0 < middle && middle < coincidences[k].r1) {
-        piece.coincidence = static_cast<std::int32_t>(record.coincidence_begin + k);
+        piece.coincidence = static_cast<std::int32_t>(details.coincidence_begin + k);
         break;
       }
     }
@@ -237,7 +291,7 @@ void ElementOverlay::overlay_edge(std::int32_t edge, Record& record) {
     }
     pieces_.push_back(piece);
   }
-  record.piece_end = static_cast<std::uint32_t>(pieces_.size());
+  details.piece_end = static_cast<std::uint32_t>(pieces_.size());
 }
 
 void ElementOverlay::add_donor_part(std::int32_t edge, double s0, double s1) {
@@ -251,18 +305,18 @@ void ElementOverlay::donor_edges_inside(std::int32_t t) {
   marks_.clear();
   covered_.clear();
   for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
-    const Record& record = known_record(side.edge);
+    const Details& record = details_of(records_[record_of(side.edge.value)]);
     for (std::uint32_t i = record.contact_begin; i < record.contact_end; ++i) {
       const Contact& c = contacts_[i];
       const bool inner = is_inner(c.r) && is_inner(c.s);
       std::int8_t direction = inner ? c.sign : std::int8_t{0};
       if (side.reversed) direction = static_cast<std::int8_t>(-direction);
-      marks_.push_back({c.donor_edge, c.s, direction, -1});
+      marks_.push_back({c.donor_edge, c.s, direction});
     }
     for (std::uint32_t i = record.coincidence_begin; i < record.coincidence_end; ++i) {
       const Coincidence& c = coincidences_[i];
-      marks_.push_back({c.donor_edge, c.s0, 0, -1});
-      marks_.push_back({c.donor_edge, c.s1, 0, -1});
+      marks_.push_back({c.donor_edge, c.s0, 0});
+      marks_.push_back({c.donor_edge, c.s1, 0});
       covered_.push_back({c.donor_edge, {std::min(c.s0, c.s1), std::max(c.s0, c.s1)}});
     }
   }
@@ -329,36 +383,50 @@ void ElementOverlay::donor_edges_inside(std::int32_t t) {
   }
 }
 
-const ElementOverlay::Record& ElementOverlay::record_of(std::int32_t t, std::int32_t edge) {
+std::size_t ElementOverlay::record_of(std::int32_t edge) {
   Place& place = record_place_[static_cast<std::size_t>(edge)];
-  if (place.chunk != chunk_) {
+  if (place.stamp != chunk_) {
     place = {chunk_, static_cast<std::int32_t>(records_.size())};
-    Record& record = records_.emplace_back();
-    if (!walk_straight_edge(edge, record) && !walk_edge(edge, record)) {
-      find_candidates(t);
-      overlay_edge(edge, record);
-    }
+    records_.emplace_back().edge = edge;
   }
-  return records_[static_cast<std::size_t>(place.at)];
+  return static_cast<std::size_t>(place.at);
+}
+
+void ElementOverlay::find_records(std::int32_t t) {
+  const auto& sides = target_.element_edges[static_cast<std::size_t>(t)];
+  const std::size_t known = records_.size();
+  for (std::size_t k = 0; k < 3; ++k) own_[k] = record_of(sides[k].edge.value);
+  if (is_straight() && records_.size() > known) walk_straight_edges(known);
+  for (const std::size_t i : own_) {
+    Record& record = records_[i];
+    if (record.walked() || record.details >= 0 || walk_edge(record) || share_edge(record)) continue;
+    find_candidates(t);
+    overlay_edge(record);
+  }
 }
 
 void ElementOverlay::add(std::int32_t t, OverlayList& list, OverlayCounts& counts) {
+  find_records(t);
   bool walked = true;
-  for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
-    const Record& record = record_of(t, side.edge.value);
-    walked = walked && record.walked;
-    const auto& owner = target_.edge_sides[side.edge.index()];
-    if ((owner[0] != exterior ? owner[0] : owner[1]) == t) {
-      counts.crossings += record.crossings;
-      counts.tangencies += record.tangencies;
-      counts.overlaps += record.overlaps;
-      counts.unresolved += record.unresolved;
-    }
+  for (const std::size_t i : own_) {
+    const Record& record = records_[i];
+    const auto& owner = target_.edge_sides[static_cast<std::size_t>(record.edge)];
+    const bool owned = (owner[0] != exterior ? owner[0] : owner[1]) == t;
+    walked = walked && record.walked();
+    counts.crossings += owned ? record.crossings : 0;
     counts.max_joint_gap = std::max(counts.max_joint_gap, record.gap);
+    if (record.details < 0 || !owned) continue;
+    const Details& details = details_of(record);
+    counts.tangencies += details.tangencies;
+    counts.overlaps += details.overlaps;
+    counts.unresolved += details.unresolved;
   }
   if (!(walked && walk_inside(t, list))) {
-    find_candidates(t);
-    find_segments(t);
+    find_boundary_segments(t);
+    if (!is_one_donor()) {
+      find_candidates(t);
+      donor_edges_inside(t);
+    }
     group_segments(list);
   }
   list.close();
@@ -366,7 +434,7 @@ void ElementOverlay::add(std::int32_t t, OverlayList& list, OverlayCounts& count
 
 // Where a vertex hangs, a long donor edge with an element on one side only lies along short ones
 // with elements on the other.
-std::pair<std::size_t, std::int32_t> ElementOverlay::facing_coincidence(const Record& record,
+std::pair<std::size_t, std::int32_t> ElementOverlay::facing_coincidence(const Details& record,
                                                                         const Piece& piece,
                                                                         bool reversed) const {
   const auto donor_of = [&](const Coincidence& c) {
@@ -386,10 +454,10 @@ std::pair<std::size_t, std::int32_t> ElementOverlay::facing_coincidence(const Re
   return {first, exterior};
 }
 
-void ElementOverlay::find_segments(std::int32_t t) {
+void ElementOverlay::find_boundary_segments(std::int32_t t) {
   segments_.clear();
   for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
-    const Record& record = known_record(side.edge);
+    const Details& record = unfold(records_[record_of(side.edge.value)]);
     for (std::uint32_t i = record.piece_begin; i < record.piece_end; ++i) {
       const Piece& piece = pieces_[i];
       Segment segment;
@@ -419,7 +487,15 @@ void ElementOverlay::find_segments(std::int32_t t) {
       segments_.push_back(segment);
     }
   }
-  donor_edges_inside(t);
+}
+
+// T is a donor element: all three edges are edges of it, as a whole.
+bool ElementOverlay::is_one_donor() const {
+  return segments_.size() == 3 && segments_[0].donor != exterior &&
+         std::all_of(segments_.begin(), segments_.end(), [&](const Segment& segment) {
+           return segment.donor == segments_[0].donor && segment.source.edge >= 0 &&
+                  std::abs(segment.source.to - segment.source.from) == 1.0;
+         });
 }
 
 void collect_segments(const ElementPieces& own, std::vector<Segment>& out) {

@@ -125,7 +125,9 @@ class ElementOverlay {
   ElementOverlay(const OverlayMesh& donor, const OverlayMesh& target, const FrontSearch& search);
 
   /// Forgets the edges computed so far (memory stays bounded by a chunk of elements).
-  void begin_chunk();
+  /// @param elements  that will be added: where both meshes are straight their edges are found
+  ///                  together. Nothing but time depends on them.
+  void begin_chunk(std::span<const std::int32_t> elements = {});
   /// Adds the overlay of target element t to the list.
   /// counts: contacts are counted when first computed in a chunk by their owner (the edge's left or
   /// only element).
@@ -148,62 +150,113 @@ class ElementOverlay {
     std::int32_t donor;        // donor element or exterior
     std::int32_t coincidence;  // index into coincidences_, -1 when the piece is not on a donor edge
   };
+  /// Along a target edge that was walked: its piece in a donor element and how it leaves that.
+  struct Step {
+    double r, s;
+    std::int32_t donor;
+    std::int32_t donor_edge;  // crossed at r; -1 at the target edge's end
+    std::int32_t next;
+    std::int32_t sign;  // of the crossing, as a contact's
+  };
   struct Record {
-    bool walked =
-        false;  // all its contacts are plain crossings, found by walking through the donor
+    std::int32_t edge;
+    std::int32_t first_step = -1;  // of a walk: all contacts are plain crossings
+    std::int32_t details = -1;     // of an edge that was not walked, or unfolded
+    std::int32_t crossings = 0;
+    double gap = 0;  // largest between points of the two meshes, of the edge's diameter
+    bool walked() const { return first_step >= 0; }
+  };
+  struct Details {
     std::uint32_t contact_begin = 0, contact_end = 0;
     std::uint32_t coincidence_begin = 0, coincidence_end = 0;
     std::uint32_t piece_begin = 0, piece_end = 0;
-    double gap = 0;  // largest between points of the two meshes, of the edge's diameter
-    std::int32_t crossings = 0, tangencies = 0, overlaps = 0, unresolved = 0;
+    std::int32_t tangencies = 0, overlaps = 0, unresolved = 0;
   };
   struct Mark {
     std::int32_t edge;
     double s;
-    std::int8_t direction;  // +1 enters T as s increases, -1 leaves, 0 unknown
-    std::int32_t next;      // on the same edge, in the walk; -1 for none
+    std::int8_t direction;                    // +1 enters T as s increases, -1 leaves, 0 unknown
+    std::array<std::int32_t, 2> region = {};  // beside the edge; where edges were walked only
+  };
+  /// A part of a donor edge inside T.
+  struct InnerPart {
+    std::array<double, 2> end = {0.0, 1.0};
+    std::int32_t edge = -1;
+    std::array<std::int32_t, 2> region{};  // left and right
+    std::uint32_t cut = 0;  // bit k: by T's boundary at end k; else the edge ends there, inside T
+  };
+  /// A straight target edge a + r d on its way through the donor mesh.
+  struct Walk {
+    Vec2 a, d;
+    double size;  // of d
+    // Of the line, cross(d, x - a), at the ends of the side that it leaves by: right and left of
+    // it.
+    std::array<double, 2> beside;
+    double r, gap_squared, last_gap_squared;
+    std::int32_t donor, side, first_step, last_step, steps, record;
+    bool ended;
   };
 
-  /// Where something is remembered that holds for the current chunk only.
+  static constexpr std::int32_t unlocated = -2;
+  /// In place of a vertex's donor element where it is a vertex of the donor mesh: minus the node.
+  static constexpr std::int32_t first_node = -3;
+
+  /// Where something is remembered that holds for one chunk or element only.
   struct Place {
-    std::uint32_t chunk = 0;
+    std::uint32_t stamp = 0;
     std::int32_t at = 0;
   };
 
-  const Record& record_of(std::int32_t t, std::int32_t edge);
-  /// Of an edge that record_of was asked for in this chunk.
-  const Record& known_record(EdgeId edge) const {
-    return records_[static_cast<std::size_t>(record_place_[edge.index()].at)];
+  /// The number of an edge's record in this chunk; a new one is empty.
+  std::size_t record_of(std::int32_t edge);
+  void find_records(std::int32_t t);
+  Details& details_of(const Record& record) {
+    return details_[static_cast<std::size_t>(record.details)];
   }
   void find_candidates(std::int32_t t);
-  void overlay_edge(std::int32_t edge, Record& record);
+  void overlay_edge(Record& record);
+  /// Puts what two edges have in common on the lists, when that is quickly seen.
+  bool meet_ordinarily(const CurveCache& curve, const CurveCache& other, double distance,
+                       std::int32_t donor_edge, Record& record);
   // Ordinary edges and elements (overlay_walk.cpp).
-  std::int32_t donor_at_vertex(std::int32_t vertex);
-  bool walk_edge(std::int32_t edge, Record& record);
-  bool walk_straight_edge(std::int32_t edge, Record& record);
-  void keep_walk(Record& record, std::size_t contact_begin, std::size_t piece_begin, double gap);
+  /// `near`: a vertex that may be near.
+  std::int32_t donor_at_vertex(std::int32_t vertex, std::int32_t near);
+  bool walk_edge(Record& record);
+  bool share_edge(Record& record);
+  std::int32_t donor_node(const Vec2& p);
+  void add_step(const Step& step);
+  /// The record's contacts and pieces, from the steps of a walk if need be.
+  const Details& unfold(Record& record);
   bool walk_inside(std::int32_t t, OverlayList& list);
-  void mark_contacts(std::int32_t t);
+  bool cross_boundary(std::int32_t t, OverlayList& list);
+  bool order_crossings(std::int32_t t);
+  void add_inner_parts(OverlayList& list);
+  // Straight edges (straight_walk.cpp).
+  bool is_straight() const { return !search_.straight().empty() && target_.degree == 1; }
+  void walk_straight_edges(std::size_t first_record);
+  bool start_walk(std::size_t record, Walk& walk);
+  void advance_walks();
+  void finish_walk(const Walk& walk);
   /// The number of a donor's region.
   std::int32_t region_of(std::int32_t donor, OverlayList& list) {
-    Group& group = group_[static_cast<std::size_t>(donor + 1)];
-    if (group.stamp != group_now_) {
-      group = {group_now_, static_cast<std::uint32_t>(group_count_++)};
+    Place& group = group_[static_cast<std::size_t>(donor + 1)];
+    if (group.stamp != now_) {
+      group = {now_, static_cast<std::int32_t>(group_count_++)};
       list.donors.push_back(donor);
     }
-    return static_cast<std::int32_t>(group.slot);
+    return group.at;
   }
-  void add_target_pieces(std::int32_t t, OverlayList& list);
   /// Puts all common points of two edges on the list of contacts, when all are plain crossings.
   bool plain_crossings(const CurveCache& curve, const CurveCache& other, double distance,
                        std::int32_t donor_edge, double& gap);
-  void next_walk();
-  void next_group();
-  void find_segments(std::int32_t t);
+  /// Forgets what is remembered of edges, nodes and regions for one element.
+  void next_stamp();
+  void find_boundary_segments(std::int32_t t);
+  bool is_one_donor() const;
   void group_segments(OverlayList& list);
   /// The coincidence of a piece whose donor edge has an element on the target element's side, and
   /// that element.
-  std::pair<std::size_t, std::int32_t> facing_coincidence(const Record& record, const Piece& piece,
+  std::pair<std::size_t, std::int32_t> facing_coincidence(const Details& record, const Piece& piece,
                                                           bool reversed) const;
   std::int32_t locate_piece(std::span<const Vec2> curve, double r0, double r1) const;
   std::int32_t best_donor(const Vec2& p, double& margin) const;
@@ -216,15 +269,21 @@ class ElementOverlay {
   const FrontSearch& search_;
   FrontSearch::Memory search_memory_;
   std::uint32_t chunk_ = 0;
-  std::vector<Record> records_;              // of the chunk's edges
-  std::vector<Place> record_place_;          // by target edge
-  std::vector<Place> vertex_place_;          // by target node: the donor element around it
-  std::int32_t last_donor_ = 0;              // of the vertices looked at
-  std::vector<std::uint32_t> walk_stamp_;    // by donor edge
-  std::vector<std::int32_t> first_mark_;     // by donor edge: of those with this walk's stamp
-  std::vector<std::int32_t> crossed_;        // donor edges, as met
+  std::vector<Record> records_;  // of the chunk's edges
+  std::vector<Details> details_;
+  std::array<std::size_t, 3> own_{};        // the records of the element's edges
+  std::vector<Place> record_place_;         // by target edge
+  std::vector<std::int32_t> vertex_place_;  // by target node: the donor element around it
+  std::int32_t last_donor_ = 0;             // of the vertices looked at
+  std::vector<Step> steps_;                 // room for more than step_count_
+  std::size_t step_count_ = 0;
+  std::vector<Walk> walks_;
+  std::vector<std::uint32_t> going_;  // numbers of walks
+  std::uint32_t now_ = 0;             // the stamp of what is remembered
+  std::vector<Place> inner_place_;    // by donor edge: its part
+  std::vector<InnerPart> inner_;      // room for more than inner_count_
+  std::size_t inner_count_ = 0;
   std::vector<std::uint32_t> inside_stamp_;  // by donor node
-  std::uint32_t walk_now_ = 0;
   std::vector<std::int32_t> walk_;
   std::int32_t candidates_of_ = -1;  // the target element that candidates_ were found for
   std::vector<Contact> contacts_;
@@ -237,11 +296,7 @@ class ElementOverlay {
   std::vector<std::pair<std::int32_t, std::pair<double, double>>>
       covered_;  // donor edge, s interval on T's boundary
   std::vector<Segment> segments_;
-  struct Group {
-    std::uint32_t stamp = 0, slot = 0;
-  };
-  std::vector<Group> group_;  // by donor element + 1
-  std::uint32_t group_now_ = 0;
+  std::vector<Place> group_;  // by donor element + 1: its region
   std::size_t group_count_ = 0;
   std::vector<std::uint32_t> slots_, group_end_;
   std::vector<double> breaks_;

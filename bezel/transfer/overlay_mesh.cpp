@@ -16,8 +16,6 @@ namespace {
 constexpr std::size_t block = 1024;
 /// Steps from element to element before a search goes on in the tree.
 constexpr int longest_walk = 64;
-/// A point whose barycentric coordinates exceed this lies in one element only, and no edge is near.
-constexpr double clear_of_edges = 1e-8;
 
 }  // namespace
 
@@ -153,15 +151,9 @@ std::int32_t FrontSearch::containing(const Vec2& p, std::int32_t start, Memory& 
     // are short.
     const std::size_t longest = static_cast<std::size_t>(longest_walk) + straight_.size() / 64;
     for (std::size_t step = 0; start >= 0 && step < longest; ++step) {
-      const StraightElement& element = straight_[static_cast<std::size_t>(start)];
-      const auto& c = element.corner;
-      const std::array<double, 3> l = {cross(c[1] - c[0], p - c[0]), cross(c[2] - c[1], p - c[1]),
-                                       cross(c[0] - c[2], p - c[2])};
-      const auto smallest = std::min_element(l.begin(), l.end());
-      if (*smallest >= 0.0)
-        return *smallest > clear_of_edges * (l[0] + l[1] + l[2]) ? start : exterior;
-      // -1 stays negative.
-      start = element.beyond[static_cast<std::size_t>(smallest - l.begin())] >> 2;
+      const StraightPlace place = place_in(straight_[static_cast<std::size_t>(start)], p);
+      if (place.inside) return place.clear ? start : exterior;
+      start = place.beyond >> 2;  // -1 stays negative
     }
     start = exterior;
   }

@@ -37,7 +37,7 @@ struct Worker {
   OverlayList overlays;  // of a chunk's elements
 
   void find_overlays(std::span<const std::int32_t> elements, OverlayCounts& counts) {
-    overlay.begin_chunk();
+    overlay.begin_chunk(elements);
     overlays.clear();
     for (const std::int32_t t : elements) overlay.add(t, overlays, counts);
   }

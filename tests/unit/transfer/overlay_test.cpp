@@ -91,6 +91,84 @@ TEST(ElementOverlay, IdenticalTrianglesShareTheirSidesOnly) {
   EXPECT_EQ(counts.overlaps, 3);
 }
 
+TEST(ElementOverlay, AMeshOntoItselfHasNothingButItsEdges) {
+  for (int g = 1; g <= 3; ++g) {
+    const auto mesh = test::grid_mesh(4, g, 1.0, test::bend(0.15, 0.12));
+    const OverlayMesh donor(mesh, "donor", 1);
+    const OverlayMesh target(std::make_shared<const TriangleMesh>(*mesh), "target", 1);
+    const FrontSearch search(donor);
+    ElementOverlay overlay(donor, target, search);
+    overlay.begin_chunk();
+    OverlayCounts counts;
+    for (std::int32_t t = 0; t < static_cast<std::int32_t>(target.element_count()); ++t) {
+      const auto segments = segments_of(overlay, t, counts);
+      ASSERT_EQ(segments.size(), 3U);
+      for (const Segment& s : segments) {
+        EXPECT_EQ(s.donor, t);
+        EXPECT_EQ(s.source.edge, s.target.edge);
+        EXPECT_EQ(s.source.from, s.target.from);
+      }
+    }
+    EXPECT_EQ(counts.overlaps, static_cast<std::int64_t>(mesh->edge_count()));
+    EXPECT_EQ(counts.max_joint_gap, 0.0);
+  }
+}
+
+// Two donor edges in one place, with nothing between them: each has one of the target's elements.
+TEST(ElementOverlay, TheSidesOfASlitAreToldApart) {
+  const auto square = [](bool slit) {
+    std::vector<Vec2> p = {{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}};
+    if (slit) p.insert(p.end(), {p[0], p[2]});
+    const std::vector<int> nodes =
+        slit ? std::vector<int>{0, 1, 2, 4, 5, 3} : std::vector<int>{0, 1, 2, 0, 2, 3};
+    std::vector<NodeId> ids;
+    for (const int n : nodes) ids.push_back(NodeId(n));
+    return std::make_shared<const TriangleMesh>(1, p, ids);
+  };
+  const OverlayMesh donor(square(true), "donor", 1), target(square(false), "target", 1);
+  const FrontSearch search(donor);
+  ElementOverlay overlay(donor, target, search);
+  overlay.begin_chunk();
+  OverlayCounts counts;
+  for (std::int32_t t = 0; t < 2; ++t) {
+    const auto segments = segments_of(overlay, t, counts);
+    ASSERT_EQ(segments.size(), 3U);
+    for (const Segment& s : segments) EXPECT_EQ(s.donor, t);
+  }
+}
+
+// What is found does not depend on which edges are looked for together.
+TEST(ElementOverlay, ChunksGiveTheSamePieces) {
+  const OverlayMesh donor(test::grid_mesh(9, 1, 1.0, test::bend(0.15, 0.12)), "donor", 1);
+  const OverlayMesh target(test::grid_mesh(7, 1, 1.0, test::turn(0.3, 0.7, test::bend(0.1, -0.15))),
+                           "target", 1);
+  const FrontSearch search(donor);
+  ElementOverlay alone(donor, target, search), together(donor, target, search);
+  std::vector<std::int32_t> elements(target.element_count());
+  for (std::size_t t = 0; t < elements.size(); ++t) elements[t] = static_cast<std::int32_t>(t);
+  OverlayCounts counts, counts_together;
+  OverlayList list, list_together;
+  alone.begin_chunk();
+  for (auto t = elements.rbegin(); t != elements.rend(); ++t) alone.add(*t, list, counts);
+  together.begin_chunk(elements);
+  for (const std::int32_t t : elements) together.add(t, list_together, counts_together);
+  EXPECT_EQ(counts.crossings, counts_together.crossings);
+  EXPECT_EQ(counts.max_joint_gap, counts_together.max_joint_gap);
+  for (std::size_t t = 0; t < elements.size(); ++t) {
+    std::vector<Segment> a, b;
+    collect_segments(list[elements.size() - 1 - t], a);
+    collect_segments(list_together[t], b);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_EQ(a[i].donor, b[i].donor);
+      EXPECT_EQ(a[i].target.edge, b[i].target.edge);
+      EXPECT_EQ(a[i].target.from, b[i].target.from);
+      EXPECT_EQ(a[i].source.edge, b[i].source.edge);
+      EXPECT_EQ(a[i].source.to, b[i].source.to);
+    }
+  }
+}
+
 TEST(CurvePoint, EqualsTheDefinition) {
   RandomStream random("curve point", 1);
   for (std::size_t n = 2; n <= 11; ++n) {
