@@ -118,30 +118,34 @@ int run(int argc, char** argv) {
   }
 }
 
+/// run(), whose exceptions become messages and exit codes.
+int guarded_run(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const InputError& error) {
+    return fail(bad_input, error.what());
+  } catch (const NumericsError& error) {
+    return fail(gave_up, error.what());
+  } catch (const Interrupted& error) {
+    return fail(ProgressBar::stop_signal() == SIGTERM ? terminated : interrupted, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(gave_up, "out of memory");
+  } catch (const std::exception& error) {
+    return fail(bug, error.what());
+  }
+}
+
 }  // namespace
 }  // namespace bezel::cli
 
 int main(int argc, char** argv) {
+  if (bezel::launch().rank == 0) return bezel::cli::guarded_run(argc, argv);
   // Of several processes that mpirun started the first one speaks.
-  if (bezel::launch().rank > 0) {
-    for (std::FILE* stream : {stdout, stderr}) {
-      if (std::freopen("/dev/null", "w", stream) == nullptr) return bezel::cli::bug;
-    }
+  for (std::FILE* stream : {stdout, stderr}) {
+    if (std::freopen("/dev/null", "w", stream) == nullptr) return bezel::cli::bug;
   }
-  try {
-    return bezel::cli::run(argc, argv);
-  } catch (const bezel::InputError& error) {
-    return bezel::cli::fail(bezel::cli::bad_input, error.what());
-  } catch (const bezel::NumericsError& error) {
-    return bezel::cli::fail(bezel::cli::gave_up, error.what());
-  } catch (const bezel::Interrupted& error) {
-    return bezel::cli::fail(bezel::cli::ProgressBar::stop_signal() == SIGTERM
-                                ? bezel::cli::terminated
-                                : bezel::cli::interrupted,
-                            error.what());
-  } catch (const std::bad_alloc&) {
-    return bezel::cli::fail(bezel::cli::gave_up, "out of memory");
-  } catch (const std::exception& error) {
-    return bezel::cli::fail(bezel::cli::bug, error.what());
-  }
+  const int code = bezel::cli::guarded_run(argc, argv);
+  // All were called in the same wrong way. The first process says so; mpirun would end it before
+  // that when another one has failed already.
+  return code == bezel::cli::usage ? bezel::cli::ok : code;
 }

@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "bezel/base/atomic_file.hpp"
+#include "bezel/base/parallel.hpp"
 
 namespace bezel::cli {
 
@@ -60,6 +61,14 @@ Dataset read_noting(const Context& context, const std::string& path,
   options.format = format;
   Dataset data = read(path, options);
   notes(context, path, data.notes);
+  return data;
+}
+
+std::vector<Dataset> read_all_noting(const Context& context, std::span<const std::string> paths) {
+  std::vector<Dataset> data(paths.size());
+  parallel_for(
+      paths.size(), [&](std::size_t i) { data[i] = read(paths[i]); }, context.threads);
+  for (std::size_t i = 0; i < paths.size(); ++i) notes(context, paths[i], data[i].notes);
   return data;
 }
 

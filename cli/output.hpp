@@ -3,6 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +34,9 @@ void notes(const Context& context, const std::string& file,
 /// Reads a file and notes what was not kept.
 Dataset read_noting(const Context& context, const std::string& path,
                     const std::optional<Format>& format = {});
+
+/// Reads several files at the same time; notes and errors come in their order.
+std::vector<Dataset> read_all_noting(const Context& context, std::span<const std::string> paths);
 
 /// Fails now, before the work, when a file cannot be written later.
 /// @throws InputError

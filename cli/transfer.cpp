@@ -282,11 +282,16 @@ TransferResult move(const TransferCommand& options, std::span<const Field> field
                     const std::shared_ptr<const TriangleMesh>& target,
                     const TransferOptions& how_to, Processes* processes,
                     std::optional<TransferOperator>& matrix, const Progress& progress) {
-  if (processes != nullptr) return processes->transfer(fields, target, how_to, progress);
-  if (options.matrix.empty()) return transfer(fields, target, how_to, progress);
+  if (options.matrix.empty()) {
+    return processes != nullptr ? processes->transfer(fields, target, how_to, progress)
+                                : transfer(fields, target, how_to, progress);
+  }
   TransferOptions linear = how_to;
   linear.bounds = {};
-  matrix.emplace(fields.front().space_ptr(), target, linear, progress);
+  const auto& donor = fields.front().space_ptr();
+  matrix.emplace(processes != nullptr
+                     ? processes->transfer_operator(donor, target, linear, progress)
+                     : TransferOperator(donor, target, linear, progress));
   for (const Field& f : fields) {
     if (!matrix->accepts(f.space()))
       throw InputError("donor mesh: field '" + f.name() + "' has another degree or basis than '" +
@@ -299,12 +304,6 @@ int run(const TransferCommand& options, const Context& context) {
   check_usage(options);
   const TransferOptions how_to = transfer_options(options, context);
   const bool series = is_collection(options.donor) || is_collection(options.out);
-  if (launch().size > 1) {
-    if (series) throw UsageError("a time series is moved by one process: start it without mpirun");
-    if (!options.matrix.empty()) throw UsageError("--matrix: by one process only");
-    if (options.mass_method == "petsc")
-      throw UsageError("--mass-method petsc: in one process only");
-  }
   const std::unique_ptr<Processes> processes = join_processes();
   if (processes && processes->rank() > 0) {
     // Several processes with all threads each would be in each other's way.
@@ -317,7 +316,8 @@ int run(const TransferCommand& options, const Context& context) {
       throw UsageError("--format: the steps of a time series are written as vtu");
     return transfer_series(
         {options.donor, options.target, options.out, options.report, options.fields}, how_to,
-        [&](const TransferReport& report) { return to_json(options, report); }, context);
+        [&](const TransferReport& report) { return to_json(options, report); }, context,
+        processes.get());
   }
   WriteOptions how;
   how.format = options.format ? options.format : format_of(options.out);
@@ -325,9 +325,11 @@ int run(const TransferCommand& options, const Context& context) {
   if (!options.report.empty()) require_writable(options.report);
   if (!options.matrix.empty()) require_writable(options.matrix);
 
-  const Dataset donor = read_noting(context, options.donor);
+  const std::vector<Dataset> data =
+      read_all_noting(context, std::array{options.donor, options.target});
+  const Dataset& donor = data[0];
+  const Dataset& target = data[1];
   const std::vector<Field> fields = chosen_fields(donor, options.donor, options.fields);
-  const Dataset target = read_noting(context, options.target);
 
   TransferResult result;
   std::optional<TransferOperator> matrix;

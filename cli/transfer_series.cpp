@@ -14,6 +14,7 @@
 #include "bezel/transfer/series.hpp"
 #include "cli/command.hpp"
 #include "cli/progress_bar.hpp"
+#include "cli/transfer_processes.hpp"
 
 namespace bezel::cli {
 
@@ -112,7 +113,7 @@ std::string table(const std::vector<TimeStep>& steps,
 
 int transfer_series(const SeriesFiles& files, const TransferOptions& options,
                     const std::function<Json(const TransferReport&)>& describe,
-                    const Context& context) {
+                    const Context& context, Processes* processes) {
   if (!is_collection(files.donor) || !is_collection(files.out)) {
     throw UsageError(
         is_collection(files.donor)
@@ -125,7 +126,7 @@ int transfer_series(const SeriesFiles& files, const TransferOptions& options,
   const std::vector<TimeStep> written = output_steps(files.out, steps);
   check_places(files, steps, written);
   const Dataset target = read_noting(context, files.target);
-  TransferSeries series(target.mesh, options);
+  TransferSeries series(target.mesh, options, TransferSeries::default_memory, processes);
 
   FileSet set;
   Json entries = Json::array();
@@ -174,12 +175,13 @@ int transfer_series(const SeriesFiles& files, const TransferOptions& options,
     }
   }
   bar.wipe();
-  const Json report = {{"schema", "bezel/transfer-series/1"},
-                       {"donor", files.donor},
-                       {"target", files.target},
-                       {"output", files.out},
-                       {"geometries", series.geometries()},
-                       {"steps", entries}};
+  Json report = {{"schema", "bezel/transfer-series/1"},
+                 {"donor", files.donor},
+                 {"target", files.target},
+                 {"output", files.out},
+                 {"geometries", series.geometries()},
+                 {"steps", entries}};
+  if (processes != nullptr) report["processes"] = processes_json(*processes);
   if (!files.report.empty()) {
     set.add(files.report, to_text(report));
     names.push_back(files.report);
@@ -187,7 +189,9 @@ int transfer_series(const SeriesFiles& files, const TransferOptions& options,
   set.add(files.out, encode_pvd(written));
   names.push_back(files.out);
   set.commit();
-  print_or_remove(context.json ? to_text(report) : table(steps, lines), names);
+  std::string text = context.json ? to_text(report) : table(steps, lines);
+  if (processes != nullptr && !context.json) text += processes_table(*processes);
+  print_or_remove(text, names);
   return ok;
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bezel/io/io.hpp"
-#include "bezel/transfer/transfer.hpp"
+#include "bezel/transfer/distributed.hpp"
 #include "cli/context.hpp"
 #include "cli/output.hpp"
 
@@ -29,9 +29,10 @@ struct SeriesFiles {
   std::vector<std::string> fields;
 };
 /// Moves the fields of every step; writes one .vtu file a step beside the collection `out`.
-/// @param describe  the JSON object of one transfer
+/// @param describe   the JSON object of one transfer
+/// @param processes  that share the work, or null
 int transfer_series(const SeriesFiles& files, const TransferOptions& options,
                     const std::function<Json(const TransferReport&)>& describe,
-                    const Context& context);
+                    const Context& context, Processes* processes);
 
 }  // namespace bezel::cli

@@ -67,6 +67,7 @@ ContinuousOutcome make_continuous(ContinuousMass& mass, int components,
 std::vector<ContinuousOutcome> make_continuous(std::span<Group> groups, const OverlayMesh& donor,
                                                const OverlayMesh& target, const FrontSearch& search,
                                                const TransferOptions& options,
+                                               const MassSystemMaker& make_system,
                                                const BoundsOf& bounds) {
   std::vector<ContinuousOutcome> outcomes;
   std::vector<std::unique_ptr<ContinuousMass>> masses;  // one per space
@@ -78,7 +79,8 @@ std::vector<ContinuousOutcome> make_continuous(std::span<Group> groups, const Ov
                               [&](const auto& m) { return m->space() == g.continuous_space; });
     if (known == masses.end()) {
       masses.push_back(std::make_unique<ContinuousMass>(g.continuous_space, boundary.fixed,
-                                                        options.threads, options.mass_method));
+                                                        options.threads, options.mass_method,
+                                                        nullptr, make_system));
       known = masses.end() - 1;
     }
     const auto limit = [&](std::size_t i, std::span<const double> c, std::span<const double> dofs) {

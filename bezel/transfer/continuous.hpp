@@ -51,6 +51,7 @@ using BoundsOf = std::function<ComponentBounds(std::size_t group, std::size_t co
 std::vector<ContinuousOutcome> make_continuous(std::span<Group> groups, const OverlayMesh& donor,
                                                const OverlayMesh& target, const FrontSearch& search,
                                                const TransferOptions& options,
+                                               const MassSystemMaker& make_system,
                                                const BoundsOf& bounds = {});
 
 }  // namespace bezel::detail

@@ -13,12 +13,12 @@
 #include <mpi.h>
 
 #include <algorithm>
-#include <chrono>
 #include <exception>
-#include <new>
-#include <thread>
 
+#include "bezel/transfer/distributed_system.hpp"
 #include "bezel/transfer/message.hpp"
+#include "bezel/transfer/mpi_message.hpp"
+#include "bezel/transfer/operator_by.hpp"
 #include "bezel/transfer/share.hpp"
 #endif
 
@@ -50,67 +50,11 @@ Launch launch() {
 
 namespace {
 
-using Bytes = std::vector<std::byte>;
-
-constexpr int size_tag = 1, bytes_tag = 2;
-/// MPI counts bytes in an int.
-constexpr std::size_t largest_piece = std::size_t{1} << 30;
-
-/// What a message to a serving process asks for.
-enum class Order : std::uint8_t { work, end };
-
-/// How a serving process fared.
-enum class Outcome : std::uint8_t { done, bad_input, gave_up, no_memory, other };
-
-void send(int to, std::span<const std::byte> bytes) {
-  auto size = static_cast<std::uint64_t>(bytes.size());
-  MPI_Send(&size, 1, MPI_UINT64_T, to, size_tag, MPI_COMM_WORLD);
-  for (std::size_t at = 0; at < bytes.size(); at += largest_piece) {
-    const std::size_t piece = std::min(largest_piece, bytes.size() - at);
-    MPI_Send(bytes.data() + at, static_cast<int>(piece), MPI_BYTE, to, bytes_tag, MPI_COMM_WORLD);
-  }
-}
-
-/// Waits without keeping a core busy: rank 0 reads files, and others work, meanwhile.
-Bytes receive(int from) {
-  int there = 0;
-  for (auto pause = std::chrono::microseconds(10);;) {
-    MPI_Iprobe(from, size_tag, MPI_COMM_WORLD, &there, MPI_STATUS_IGNORE);
-    if (there != 0) break;
-    std::this_thread::sleep_for(pause);
-    pause = std::min(2 * pause, std::chrono::microseconds(1000));
-  }
-  std::uint64_t size = 0;
-  MPI_Recv(&size, 1, MPI_UINT64_T, from, size_tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-  Bytes bytes(static_cast<std::size_t>(size));
-  for (std::size_t at = 0; at < bytes.size(); at += largest_piece) {
-    const std::size_t piece = std::min(largest_piece, bytes.size() - at);
-    MPI_Recv(bytes.data() + at, static_cast<int>(piece), MPI_BYTE, from, bytes_tag, MPI_COMM_WORLD,
-             MPI_STATUS_IGNORE);
-  }
-  return bytes;
-}
-
-Bytes failure(Outcome outcome, const std::string& message) {
-  detail::MessageWriter out;
-  out.value(outcome);
-  out.text(message);
-  return out.take();
-}
-
-/// What rank 0 throws for it.
-[[noreturn]] void rethrow(Outcome outcome, const std::string& message) {
-  switch (outcome) {
-    case Outcome::bad_input:
-      throw InputError(message);
-    case Outcome::gave_up:
-      throw NumericsError(message);
-    case Outcome::no_memory:
-      throw std::bad_alloc();
-    default:
-      throw InternalError(message);
-  }
-}
+using detail::Bytes;
+using detail::Order;
+using detail::Outcome;
+using detail::receive;
+using detail::send;
 
 /// The answer to an order to work.
 Bytes answer(detail::MessageReader& in, int threads) {
@@ -122,14 +66,8 @@ Bytes answer(detail::MessageReader& in, int threads) {
     out.value(work);
     out.list(results.take());
     return out.take();
-  } catch (const InputError& error) {
-    return failure(Outcome::bad_input, error.what());
-  } catch (const NumericsError& error) {
-    return failure(Outcome::gave_up, error.what());
-  } catch (const std::bad_alloc&) {
-    return failure(Outcome::no_memory, "");
-  } catch (const std::exception& error) {
-    return failure(Outcome::other, error.what());
+  } catch (...) {
+    return detail::failure();
   }
 }
 
@@ -145,12 +83,38 @@ struct Processes::Impl {
   bool served = false;
   std::vector<ShareReport> shares;
   double alone = 0;
+  std::int32_t systems = 0;  // made so far
+  detail::ServedRows served_rows;
 
   std::vector<detail::ChunkResult> sweep(const detail::OverlayMesh& donor,
                                          const detail::OverlayMesh& target,
                                          const detail::FrontSearch& search,
                                          std::span<detail::Group> groups,
-                                         const TransferOptions& options, const Progress& progress);
+                                         const TransferOptions& options, const Progress& progress,
+                                         const detail::VisitBlocks& visit);
+  detail::Crew crew() {
+    return {sweeper(), [this](const Space& space) -> std::unique_ptr<detail::MassSystem> {
+              if (size == 1) return std::make_unique<detail::PetscSystem>(space);
+              return std::make_unique<detail::DistributedSystem>(systems++, space, shares);
+            }};
+  }
+  detail::Sweeper sweeper() {
+    return [this](const detail::OverlayMesh& donor, const detail::OverlayMesh& target,
+                  const detail::FrontSearch& search, std::span<detail::Group> groups,
+                  const TransferOptions& options, const Progress& progress,
+                  const detail::VisitBlocks& visit) {
+      return sweep(donor, target, search, groups, options, progress, visit);
+    };
+  }
+  /// Calls work(), and notes what it took besides the share of rank 0.
+  template <class Work>
+  auto measured(const Work& work) {
+    const detail::Stopwatch watch;
+    const double own = shares[0].cpu_seconds;
+    auto result = work();
+    alone += watch.cpu_seconds() - (shares[0].cpu_seconds - own);
+    return result;
+  }
 };
 
 Processes::Processes() : impl_(std::make_unique<Impl>()) {
@@ -164,6 +128,7 @@ Processes::Processes() : impl_(std::make_unique<Impl>()) {
   }
   MPI_Comm_rank(MPI_COMM_WORLD, &impl_->rank);
   MPI_Comm_size(MPI_COMM_WORLD, &impl_->size);
+  impl_->shares.resize(static_cast<std::size_t>(impl_->size));
 }
 
 Processes::~Processes() {
@@ -174,7 +139,10 @@ Processes::~Processes() {
     // Rank 0 would wait for this process for ever.
     MPI_Abort(MPI_COMM_WORLD, 70);
   }
-  if (impl_->started) MPI_Finalize();
+  impl_->served_rows = {};
+  if (!impl_->started) return;
+  detail::end_petsc();
+  MPI_Finalize();
 }
 
 int Processes::rank() const {
@@ -196,27 +164,30 @@ void Processes::serve(int threads) {
   while (true) {
     const Bytes bytes = receive(0);
     detail::MessageReader in(bytes);
-    if (in.value<Order>() == Order::end) break;
-    send(0, answer(in, threads));
+    const auto order = in.value<Order>();
+    if (order == Order::end) break;
+    if (order == Order::work) {
+      send(0, answer(in, threads));
+    } else {
+      impl_->served_rows.obey(order, in);
+    }
   }
   impl_->served = true;
 }
 
-std::vector<detail::ChunkResult> Processes::Impl::sweep(const detail::OverlayMesh& donor,
-                                                        const detail::OverlayMesh& target,
-                                                        const detail::FrontSearch& search,
-                                                        std::span<detail::Group> groups,
-                                                        const TransferOptions& options,
-                                                        const Progress& progress) {
+std::vector<detail::ChunkResult> Processes::Impl::sweep(
+    const detail::OverlayMesh& donor, const detail::OverlayMesh& target,
+    const detail::FrontSearch& search, std::span<detail::Group> groups,
+    const TransferOptions& options, const Progress& progress, const detail::VisitBlocks& visit) {
   const auto count = static_cast<std::size_t>(size);
   const std::vector<detail::Share> split =
       detail::split_work(donor, target, search, count, options.threads);
-  // A transfer may sweep more than once: what is measured adds up.
+  detail::ShareWriter writer(donor, target, search, groups, options, static_cast<bool>(visit));
   for (std::size_t r = 1; r < count; ++r) {
     if (split[r].own.empty()) continue;
     detail::MessageWriter out;
     out.value(Order::work);
-    detail::write_share(split[r], donor, target, search, groups, options, out);
+    writer.write(split[r], out);
     const Bytes bytes = out.take();
     shares[r].bytes_in += static_cast<std::int64_t>(bytes.size());
     send(static_cast<int>(r), bytes);
@@ -229,8 +200,8 @@ std::vector<detail::ChunkResult> Processes::Impl::sweep(const detail::OverlayMes
   try {
     const detail::Share& own = split[0];
     const detail::Stopwatch watch;
-    std::vector<detail::ChunkResult> here =
-        detail::sweep_elements(donor, target, search, groups, own.own, own_options, progress);
+    std::vector<detail::ChunkResult> here = detail::sweep_elements(
+        donor, target, search, groups, own.own, own_options, progress, visit);
     ShareReport& report = shares[0];
     report.targets += static_cast<std::int64_t>(own.own.size());
     report.donors += static_cast<std::int64_t>(own.donors.size());
@@ -248,11 +219,11 @@ std::vector<detail::ChunkResult> Processes::Impl::sweep(const detail::OverlayMes
       detail::MessageReader in(bytes);
       const auto outcome = in.value<Outcome>();
       if (error) continue;
-      if (outcome != Outcome::done) rethrow(outcome, in.text());
+      if (outcome != Outcome::done) detail::rethrow(outcome, in.text());
       const auto report = in.value<ShareReport>();
       const Bytes results = in.list<std::byte>();
       detail::MessageReader reader(results);
-      detail::read_results(split[r], reader, groups, chunks);
+      detail::read_results(split[r], reader, groups, chunks, visit);
       ShareReport& sum = shares[r];
       sum.targets += report.targets;
       sum.donors += report.donors;
@@ -272,20 +243,19 @@ TransferResult Processes::transfer(std::span<const Field> donors,
                                    std::shared_ptr<const TriangleMesh> target,
                                    const TransferOptions& options, const Progress& progress) {
   if (impl_->rank != 0) throw InputError("transfer: rank 0 moves the fields, the others serve it");
-  if (options.mass_method == MassMethod::petsc && impl_->size > 1) {
-    throw InputError(
-        "transfer: PETSc solves mass systems in one process only, expected another mass method");
-  }
-  impl_->shares.assign(static_cast<std::size_t>(impl_->size), {});
-  const auto sweep = [&](const detail::OverlayMesh& from, const detail::OverlayMesh& to,
-                         const detail::FrontSearch& search, std::span<detail::Group> groups,
-                         const TransferOptions& how, const Progress& done) {
-    return impl_->sweep(from, to, search, groups, how, done);
-  };
-  const detail::Stopwatch watch;
-  TransferResult result = detail::transfer_by(sweep, donors, target, options, progress);
-  impl_->alone = watch.cpu_seconds() - impl_->shares[0].cpu_seconds;
-  return result;
+  return impl_->measured(
+      [&] { return detail::transfer_by(impl_->crew(), donors, target, options, progress); });
+}
+
+TransferOperator Processes::transfer_operator(std::shared_ptr<const Space> donor,
+                                              std::shared_ptr<const TriangleMesh> target,
+                                              const TransferOptions& options,
+                                              const Progress& progress) {
+  if (impl_->rank != 0) throw InputError("transfer: rank 0 makes operators, the others serve it");
+  return impl_->measured([&] {
+    return detail::OperatorBy::make(impl_->sweeper(), std::move(donor), std::move(target), options,
+                                    progress);
+  });
 }
 
 #else
@@ -312,6 +282,12 @@ void Processes::serve(int) {}
 TransferResult Processes::transfer(std::span<const Field>, std::shared_ptr<const TriangleMesh>,
                                    const TransferOptions&, const Progress&) {
   return {};
+}
+TransferOperator Processes::transfer_operator(std::shared_ptr<const Space> donor,
+                                              std::shared_ptr<const TriangleMesh> target,
+                                              const TransferOptions& options,
+                                              const Progress& progress) {
+  return {std::move(donor), std::move(target), options, progress};
 }
 const std::vector<ShareReport>& Processes::shares() const {
   return impl_->shares;

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "bezel/transfer/transfer.hpp"
+#include "bezel/transfer/operator.hpp"
 
 namespace bezel {
 
@@ -21,7 +21,7 @@ struct Launch {
 /// starts nothing, and works in builds without MPI.
 Launch launch();
 
-/// What one process did for a transfer.
+/// What one process did for transfers.
 struct ShareReport {
   std::int64_t targets = 0;    ///< target elements it worked on
   std::int64_t donors = 0;     ///< donor elements it was sent (rank 0: that it would have been)
@@ -68,17 +68,27 @@ class Processes {
   /// Fields and report have the same bits (but for the seconds, whose parts are summed over the
   /// processes). With options.threads = 0 rank 0 works on its share with one thread, as the others
   /// do by default, and on what it does alone with all that it may use.
+  /// MassMethod::petsc solves with its rows spread over all processes: the result is that of one
+  /// process up to rounding, and the same bits only for the same number of processes.
   /// @throws as bezel::transfer(), also for what went wrong elsewhere (what a single process would
-  ///         have met first); InputError on another rank, or for MassMethod::petsc, which works in
-  ///         one process only
+  ///         have met first); InputError on another rank
   /// @limits rank 0 holds both meshes, all fields and all pairs. What it does alone grows with the
   ///         meshes: docs/methods/transfer-parallel.md
   TransferResult transfer(std::span<const Field> donors, std::shared_ptr<const TriangleMesh> target,
                           const TransferOptions& options = {}, const Progress& progress = {});
 
-  /// On rank 0: what each rank did for the last transfer.
+  /// On rank 0: a TransferOperator, with the work on the target elements shared in the same way.
+  /// The operator is rank 0's; applying it takes no other process.
+  /// @throws as the constructor of TransferOperator; InputError on another rank
+  TransferOperator transfer_operator(std::shared_ptr<const Space> donor,
+                                     std::shared_ptr<const TriangleMesh> target,
+                                     const TransferOptions& options = {},
+                                     const Progress& progress = {});
+
+  /// On rank 0: what each rank did so far.
   const std::vector<ShareReport>& shares() const;
-  /// On rank 0: processor time of the last transfer besides its share: what it did alone.
+  /// On rank 0: processor time of transfers and operators so far, besides its shares: what it did
+  /// alone.
   double alone_cpu_seconds() const;
 
  private:

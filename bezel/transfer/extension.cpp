@@ -8,8 +8,6 @@
 namespace bezel::detail {
 namespace {
 
-/// Boxes and distances that decide are widened by this part of themselves.
-constexpr double widening = 1e-6;
 /// Up to this growth the nearest donor serves: two digits are lost.
 constexpr double small_growth = 256.0;
 /// Where polynomials are not continued any more values are those at the place that reaches this.
@@ -27,26 +25,6 @@ constexpr std::size_t most_others = 16;
 /// Corners say how far an element reaches when their triangle has this part of its area.
 constexpr double least_corner_area = 0.25;
 constexpr int halvings = 40;
-
-Box2 widened(const Box2& box, double by) {
-  double magnitude = 0.0;
-  for (int axis = 0; axis < 2; ++axis)
-    magnitude = std::max({magnitude, std::abs(box.lo[axis]), std::abs(box.hi[axis])});
-  const double room = by + widening * box.diameter() + 2.0 * coordinate_rounding * magnitude;
-  Box2 wide = box;
-  wide.lo -= Vec2{{room, room}};
-  wide.hi += Vec2{{room, room}};
-  return wide;
-}
-
-double nearest_corner(const OverlayMesh& mesh, std::span<const std::int32_t> elements,
-                      const Vec2& p) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const std::int32_t e : elements) {
-    for (const Vec2& corner : mesh.corners(e)) nearest = std::min(nearest, norm(corner - p));
-  }
-  return nearest;
-}
 
 Vec2 nearest_on(const Vec2& a, const Vec2& b, const Vec2& x) {
   const Vec2 d = b - a;
@@ -84,6 +62,26 @@ void ExtensionReport::add(const ExtensionReport& other) {
   max_growth = std::max(max_growth, other.max_growth);
   moved_area += other.moved_area;
   held_area += other.held_area;
+}
+
+Box2 widened(const Box2& box, double by) {
+  double magnitude = 0.0;
+  for (int axis = 0; axis < 2; ++axis)
+    magnitude = std::max({magnitude, std::abs(box.lo[axis]), std::abs(box.hi[axis])});
+  const double room = by + widening * box.diameter() + 2.0 * coordinate_rounding * magnitude;
+  Box2 wide = box;
+  wide.lo -= Vec2{{room, room}};
+  wide.hi += Vec2{{room, room}};
+  return wide;
+}
+
+double nearest_corner(const OverlayMesh& mesh, std::span<const std::int32_t> elements,
+                      const Vec2& p) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const std::int32_t e : elements) {
+    for (const Vec2& corner : mesh.corners(e)) nearest = std::min(nearest, norm(corner - p));
+  }
+  return nearest;
 }
 
 std::size_t donors_in_reach(const OverlayMesh& donor, const FrontSearch& search, const Box2& box,

@@ -23,6 +23,14 @@ struct ExtensionReport {
   void add(const ExtensionReport& other);
 };
 
+/// Boxes and distances that decide are widened by this part of themselves.
+inline constexpr double widening = 1e-6;
+/// A box widened by that, by the rounding of its coordinates, and by a distance.
+Box2 widened(const Box2& box, double by);
+/// Distance of p from the nearest corner of some elements.
+double nearest_corner(const OverlayMesh& mesh, std::span<const std::int32_t> elements,
+                      const Vec2& p);
+
 /// The donors that may meet a target element or continue a field to it: those whose boxes are no
 /// farther from its box than some donor corner is from the box's farthest point. The same on a part
 /// of the donor that holds them.

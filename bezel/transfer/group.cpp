@@ -146,16 +146,16 @@ void Group::make_powers(std::size_t elements, int threads) {
 
 Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
              std::shared_ptr<const Space> donor_space_in,
-             std::shared_ptr<const Space> target_space_in, int threads)
+             std::shared_ptr<const Space> target_space_in, DonorDegree degree, int threads)
     : donor_space(std::move(donor_space_in)),
       target_space(std::move(target_space_in)),
-      components(bernstein::triangle_size(donor_space->highest_degree())),
-      donor_degree{donor_space->highest_degree(), donor_space->uniform_degree()},
+      components(bernstein::triangle_size(degree.highest)),
+      donor_degree(degree),
       donor_mapped(donor_space->basis() == Basis::reference && donor.degree > 1),
       target_mapped(target_space->basis() == Basis::reference && target.degree > 1) {
   make_frames(donor, target, threads);
   const auto nc = static_cast<std::size_t>(components);
-  for (int d = 0; d <= donor_space->highest_degree(); ++d) {
+  for (int d = 0; d <= donor_degree.highest; ++d) {
     scaled_offset_.push_back(scaled.size());
     const auto factors = multinomials(d);
     for (std::size_t c = 0; c < nc; ++c) {

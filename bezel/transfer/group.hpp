@@ -28,9 +28,10 @@ struct Group {
         std::shared_ptr<const Space> target_space, int threads);
   /// The donor's basis functions as components: component c is basis function c of every element
   /// (zero on elements of lower degree).
+  /// @param degree  of the whole donor, on a part too
   Group(const OverlayMesh& donor, const OverlayMesh& target,
         std::shared_ptr<const Space> donor_space, std::shared_ptr<const Space> target_space,
-        int threads);
+        DonorDegree degree, int threads);
 
   /// On parts of the meshes: `scaled` and `donor_mass` are those of a group on the whole ones.
   Group(const OverlayMesh& donor, const OverlayMesh& target,
@@ -59,6 +60,8 @@ struct Group {
   Numbers powers;
   std::vector<double> out;  ///< target coefficients, per element [n][component]
 
+  /// Whether the components are the donor's basis functions.
+  bool of_basis() const { return !scaled_offset_.empty(); }
   std::span<const double> donor_scaled(std::int32_t e) const;
   const double* donor_powers(std::int32_t e) const {
     return powers.data() + donor_space->offset(ElementId(e)) * static_cast<std::size_t>(components);

@@ -9,11 +9,12 @@
 #include "bezel/base/error.hpp"
 #include "bezel/base/parallel.hpp"
 #include "bezel/field/mass_kernel.hpp"
+#include "bezel/transfer/petsc_system.hpp"
 
 namespace bezel {
 
 bool is_available(MassMethod method) {
-  return method != MassMethod::petsc || detail::PetscSystem::available();
+  return method != MassMethod::petsc || detail::PetscRows::available();
 }
 
 }  // namespace bezel
@@ -46,7 +47,8 @@ struct ContinuousMass::Direct {
 };
 
 ContinuousMass::ContinuousMass(std::shared_ptr<const Space> space, std::vector<char> fixed,
-                               int threads, MassMethod method, const Field* weight)
+                               int threads, MassMethod method, const Field* weight,
+                               const MassSystemMaker& make_system)
     : space_(std::move(space)),
       fixed_(std::move(fixed)),
       threads_(threads),
@@ -82,7 +84,7 @@ ContinuousMass::ContinuousMass(std::shared_ptr<const Space> space, std::vector<c
   });
   local_.resize(share_.size());
   if (method_ == MassMethod::cholesky) assemble_cholesky();
-  if (method_ == MassMethod::petsc) assemble_petsc();
+  if (method_ == MassMethod::petsc) assemble_elsewhere(make_system);
 }
 
 ContinuousMass::~ContinuousMass() = default;
@@ -200,12 +202,9 @@ void ContinuousMass::assemble_cholesky() {
   solver_->solver = std::make_unique<field_detail::MassSolver>(solver_->matrix);
 }
 
-void ContinuousMass::assemble_petsc() {
+void ContinuousMass::assemble_elsewhere(const MassSystemMaker& make_system) {
   const auto is_fixed = [&](std::size_t d) { return !fixed_.empty() && fixed_[d]; };
-  std::vector<std::int32_t> row_size(space_->dof_count());
-  for (std::size_t d = 0; d < row_size.size(); ++d)
-    row_size[d] = static_cast<std::int32_t>((begin_[d + 1] - begin_[d]) * size_);
-  petsc_ = std::make_unique<PetscSystem>(row_size);
+  elsewhere_ = make_system ? make_system(*space_) : std::make_unique<PetscSystem>(*space_);
   std::vector<double> matrix(size_ * size_);
   std::vector<std::int32_t> rows(size_);
   for (std::size_t e = 0; e < elements_; ++e) {
@@ -213,13 +212,13 @@ void ContinuousMass::assemble_petsc() {
     const auto own = space_->dofs(ElementId(e));
     for (std::size_t i = 0; i < size_; ++i)
       rows[i] = is_fixed(static_cast<std::size_t>(own[i])) ? -1 : own[i];
-    petsc_->add(rows, matrix);
+    elsewhere_->add(rows, matrix);
   }
   // The fixed dofs, whose right-hand side is 0, get a row of their own.
   constexpr std::array<double, 1> unit{1.0};
-  for (std::size_t d = 0; d < row_size.size(); ++d)
-    if (is_fixed(d)) petsc_->add(std::array{static_cast<std::int32_t>(d)}, unit);
-  petsc_->finish();
+  for (std::size_t d = 0; d < space_->dof_count(); ++d)
+    if (is_fixed(d)) elsewhere_->add(std::array{static_cast<std::int32_t>(d)}, unit);
+  elsewhere_->finish();
 }
 
 /// Adds to x the solution for the residual r, to the recursive residual `smallest`.
@@ -282,7 +281,7 @@ MassSolution ContinuousMass::solve(std::span<const double> c, std::span<const do
           Eigen::Map<const Eigen::VectorXd>(r.data(), static_cast<Eigen::Index>(n)));
       for (std::size_t i = 0; i < n; ++i) candidate[i] += d(static_cast<Eigen::Index>(i), 0);
     } else if (method_ == MassMethod::petsc) {
-      solution.iterations += petsc_->solve(r, aim * size, candidate);
+      solution.iterations += elsewhere_->solve(r, aim * size, candidate);
     } else {
       solution.iterations += conjugate_gradients(r, aim * size, candidate);
     }

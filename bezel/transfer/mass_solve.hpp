@@ -9,7 +9,7 @@
 
 #include "bezel/field/field.hpp"
 #include "bezel/transfer/element_factors.hpp"
-#include "bezel/transfer/petsc_system.hpp"
+#include "bezel/transfer/mass_system.hpp"
 #include "bezel/transfer/transfer.hpp"
 
 namespace bezel::detail {
@@ -35,10 +35,12 @@ class ContinuousMass {
   /// @param fixed  empty, or per dof whether solve() keeps its value instead of solving for it
   /// @param weight  positive, of one component, on the same mesh: M_e holds integrals of weight phi
   ///                phi; null: 1
+  /// @param make_system  of MassMethod::petsc; empty: PETSc in this process
   /// @throws NumericsError naming the triangle when a mass matrix is not positive definite;
   ///         InputError for petsc in a build without it
   ContinuousMass(std::shared_ptr<const Space> space, std::vector<char> fixed, int threads,
-                 MassMethod method = MassMethod::automatic, const Field* weight = nullptr);
+                 MassMethod method = MassMethod::automatic, const Field* weight = nullptr,
+                 const MassSystemMaker& make_system = {});
   ~ContinuousMass();
   ContinuousMass(const ContinuousMass&) = delete;
   ContinuousMass& operator=(const ContinuousMass&) = delete;
@@ -70,7 +72,7 @@ class ContinuousMass {
   template <class Source, class Work>
   void by_elements(const Source& source, const Work& work, std::span<double> y);
   void assemble_cholesky();
-  void assemble_petsc();
+  void assemble_elsewhere(const MassSystemMaker& make_system);
   void mask(std::vector<double>& v) const;
   std::vector<double> residual(std::span<const double> c, std::span<const double> x);
   int conjugate_gradients(std::vector<double> r, double smallest, std::span<double> x);
@@ -88,7 +90,7 @@ class ContinuousMass {
   std::vector<std::uint32_t> entry_;  ///< places in local_
   std::vector<double> local_, partial_;
   std::unique_ptr<Direct> solver_;
-  std::unique_ptr<PetscSystem> petsc_;
+  std::unique_ptr<MassSystem> elsewhere_;
 };
 
 }  // namespace bezel::detail

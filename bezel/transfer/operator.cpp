@@ -15,9 +15,9 @@
 #include "bezel/transfer/layout.hpp"
 #include "bezel/transfer/limit.hpp"
 #include "bezel/transfer/local_bounds.hpp"
+#include "bezel/transfer/operator_by.hpp"
 #include "bezel/transfer/operator_rows.hpp"
 #include "bezel/transfer/report.hpp"
-#include "bezel/transfer/sweep.hpp"
 
 namespace bezel {
 
@@ -87,23 +87,37 @@ struct TransferOperator::Impl {
 TransferOperator::TransferOperator(std::shared_ptr<const Space> donor,
                                    std::shared_ptr<const TriangleMesh> target,
                                    const TransferOptions& options, const Progress& progress)
-    : impl_(std::make_unique<Impl>()) {
+    : TransferOperator(detail::OperatorBy::make(detail::sweep_here, std::move(donor),
+                                                std::move(target), options, progress)) {}
+
+TransferOperator::TransferOperator(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+TransferOperator detail::OperatorBy::make(const Sweeper& sweeper,
+                                          std::shared_ptr<const Space> donor,
+                                          std::shared_ptr<const TriangleMesh> target,
+                                          const TransferOptions& options,
+                                          const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   check(donor, target, options);
-  Impl& m = *impl_;
+  auto impl = std::make_unique<TransferOperator::Impl>();
+  TransferOperator::Impl& m = *impl;
   m.donor = std::move(donor);
   m.target = Space::discontinuous(std::move(target),
                                   options.degree >= 0 ? options.degree : m.donor->highest_degree(),
                                   options.same_basis ? m.donor->basis() : options.basis);
   const detail::OverlayMesh from(m.donor->mesh(), "donor", options.threads);
   const detail::OverlayMesh to(m.target->mesh(), "target", options.threads);
-  detail::Group group(from, to, m.donor, m.target, options.threads);
+  detail::Group group(from, to, m.donor, m.target,
+                      {m.donor->highest_degree(), m.donor->uniform_degree()}, options.threads);
   m.rows = OperatorRows(*m.donor, *m.target);
-  detail::Swept swept =
-      detail::sweep(from, to, {&group, 1}, options, progress,
-                    [&](std::size_t index, std::int32_t t, const detail::ElementBlocks& blocks) {
-                      m.rows.store(index, t, blocks);
-                    });
+  const detail::FrontSearch search(from);
+  const std::vector<detail::ChunkResult> chunks =
+      sweeper(from, to, search, {&group, 1}, options, progress,
+              [&](std::size_t index, std::int32_t t, const detail::ElementBlocks& blocks) {
+                m.rows.store(index, t, blocks);
+              });
+  detail::Swept swept = detail::balance(
+      chunks, from.element_area, static_cast<std::size_t>(group.components), options.uncovered);
   m.rows.index_donors();
   m.made = m.rows.take_made();
   m.integrals = field_detail::basis_integrals(*m.target, options.threads);
@@ -122,6 +136,7 @@ TransferOperator::TransferOperator(std::shared_ptr<const Space> donor,
   m.report = std::move(swept.report);
   m.report.seconds.total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return TransferOperator(std::move(impl));
 }
 
 TransferOperator::TransferOperator(TransferOperator&&) noexcept = default;

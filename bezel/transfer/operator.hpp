@@ -11,6 +11,9 @@
 namespace bezel {
 
 class AtomicFile;
+namespace detail {
+struct OperatorBy;
+}
 
 /// The transfer from one donor space to a target mesh, kept as one dense block per pair of elements
 /// that overlap: block (T, D) takes the donor's Bernstein coefficients on D to their share of the
@@ -80,7 +83,9 @@ class TransferOperator {
   void write_matrix_market(AtomicFile& file) const;
 
  private:
+  friend struct detail::OperatorBy;
   struct Impl;
+  explicit TransferOperator(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -1,5 +1,6 @@
 #include "bezel/transfer/petsc_system.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "bezel/base/error.hpp"
@@ -7,12 +8,33 @@
 #ifdef BEZEL_WITH_PETSC
 #include <petscksp.h>
 
-#include <algorithm>
 #include <array>
+#include <memory>
 #include <mutex>
-#include <vector>
+#endif
 
 namespace bezel::detail {
+namespace {
+
+/// All rows, the numbers of the dofs.
+RowRange rows_of(const Space& space) {
+  RowRange rows;
+  rows.all = static_cast<std::int32_t>(space.dof_count());
+  rows.inside.assign(space.dof_count(), 0);
+  rows.outside.assign(space.dof_count(), 0);
+  for (std::size_t e = 0; e < space.mesh()->element_count(); ++e) {
+    const auto dofs = space.dofs(ElementId(e));
+    for (const std::int32_t d : dofs)
+      rows.inside[static_cast<std::size_t>(d)] += static_cast<std::int32_t>(dofs.size());
+  }
+  return rows;
+}
+
+}  // namespace
+
+PetscSystem::PetscSystem(const Space& space) : rows_(rows_of(space), true) {}
+
+#ifdef BEZEL_WITH_PETSC
 namespace {
 
 constexpr int max_steps = 5000;
@@ -23,13 +45,14 @@ void check(PetscErrorCode code, const char* what) {
                       ")");
 }
 
-/// Starts PETSc for the process unless it runs already.
+/// PETSc started here.
 class Session {
  public:
-  Session() {
-    PetscBool running = PETSC_FALSE;
-    check(PetscInitialized(&running), "start");
-    if (running) return;
+  explicit Session(bool alone) {
+    int mpi = 0;
+    MPI_Initialized(&mpi);
+    // Where other processes may be, they do not know that this one starts PETSc for itself.
+    if (alone && mpi != 0) PETSC_COMM_WORLD = MPI_COMM_SELF;
     // PETSc would catch signals that are the program's business.
     int count = 2;
     std::string name = "bezel";
@@ -37,20 +60,21 @@ class Session {
     std::array<char*, 3> words{name.data(), quiet.data(), nullptr};
     char** arguments = words.data();
     check(PetscInitialize(&count, &arguments, nullptr, nullptr), "start");
-    own_ = true;
   }
-  ~Session() {
-    if (own_) PetscFinalize();
-  }
+  ~Session() { PetscFinalize(); }
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
-
- private:
-  bool own_ = false;
 };
 
-void start() {
-  static const Session session;
+std::unique_ptr<Session>& session() {
+  static std::unique_ptr<Session> own;
+  return own;
+}
+
+void start(bool alone) {
+  PetscBool running = PETSC_FALSE;
+  check(PetscInitialized(&running), "start");
+  if (!running) session() = std::make_unique<Session>(alone);
 }
 
 /// Errors come back as codes instead of being printed.
@@ -68,13 +92,19 @@ std::mutex& one_at_a_time() {
   return mutex;
 }
 
+std::vector<PetscInt> at_most(const std::vector<std::int32_t>& sizes, std::int32_t largest) {
+  std::vector<PetscInt> out;
+  for (const std::int32_t size : sizes) out.push_back(std::min(size, largest));
+  return out;
+}
+
 }  // namespace
 
-struct PetscSystem::Impl {
-  PetscInt n = 0;
+struct PetscRows::Impl {
+  PetscInt first = 0, end = 0;
   Mat matrix = nullptr;
   KSP solver = nullptr;
-  Vec right = nullptr, x = nullptr;
+  ::Vec right = nullptr, x = nullptr;
 
   Impl() = default;
   Impl(const Impl&) = delete;
@@ -87,38 +117,50 @@ struct PetscSystem::Impl {
   }
 };
 
-bool PetscSystem::available() {
+bool PetscRows::available() {
   return true;
 }
 
-PetscSystem::PetscSystem(std::span<const std::int32_t> row_size) : impl_(new Impl) {
+void end_petsc() {
   const std::lock_guard lock(one_at_a_time());
-  start();
-  const QuietErrors quiet;
-  impl_->n = static_cast<PetscInt>(row_size.size());
-  const std::vector<PetscInt> sizes(row_size.begin(), row_size.end());
-  check(MatCreateSeqAIJ(PETSC_COMM_SELF, impl_->n, impl_->n, 0, sizes.data(), &impl_->matrix),
-        "make a matrix");
-  check(VecCreateSeq(PETSC_COMM_SELF, impl_->n, &impl_->right), "make a vector");
-  check(VecDuplicate(impl_->right, &impl_->x), "make a vector");
-  check(KSPCreate(PETSC_COMM_SELF, &impl_->solver), "make a solver");
+  session().reset();
 }
 
-PetscSystem::~PetscSystem() {
+PetscRows::PetscRows(const RowRange& rows, bool alone) : impl_(new Impl) {
+  const std::lock_guard lock(one_at_a_time());
+  start(alone);
+  const QuietErrors quiet;
+  const MPI_Comm processes = alone ? MPI_COMM_SELF : MPI_COMM_WORLD;
+  Impl& m = *impl_;
+  m.first = rows.first;
+  m.end = rows.first + rows.size();
+  const auto inside = at_most(rows.inside, rows.size());
+  const auto outside = at_most(rows.outside, rows.all - rows.size());
+  check(MatCreateAIJ(processes, rows.size(), rows.size(), rows.all, rows.all, 0, inside.data(), 0,
+                     outside.data(), &m.matrix),
+        "make a matrix");
+  check(MatCreateVecs(m.matrix, &m.x, &m.right), "make vectors");
+  check(KSPCreate(processes, &m.solver), "make a solver");
+}
+
+PetscRows::~PetscRows() {
   const std::lock_guard lock(one_at_a_time());
   impl_.reset();
 }
 
-void PetscSystem::add(std::span<const std::int32_t> rows, std::span<const double> block) {
+void PetscRows::add(std::span<const std::int32_t> rows, std::span<const double> block) {
   const std::lock_guard lock(one_at_a_time());
   const QuietErrors quiet;
-  const std::vector<PetscInt> places(rows.begin(), rows.end());
-  const auto n = static_cast<PetscInt>(places.size());
-  check(MatSetValues(impl_->matrix, n, places.data(), n, places.data(), block.data(), ADD_VALUES),
+  const std::vector<PetscInt> columns(rows.begin(), rows.end());
+  std::vector<PetscInt> own = columns;
+  for (PetscInt& row : own)
+    if (row < impl_->first || row >= impl_->end) row = -1;
+  const auto n = static_cast<PetscInt>(own.size());
+  check(MatSetValues(impl_->matrix, n, own.data(), n, columns.data(), block.data(), ADD_VALUES),
         "add to the mass matrix");
 }
 
-void PetscSystem::finish() {
+void PetscRows::finish() {
   const std::lock_guard lock(one_at_a_time());
   const QuietErrors quiet;
   check(MatAssemblyBegin(impl_->matrix, MAT_FINAL_ASSEMBLY), "assemble the mass matrix");
@@ -134,7 +176,7 @@ void PetscSystem::finish() {
   check(KSPSetFromOptions(solver), "read its options");
 }
 
-int PetscSystem::solve(std::span<const double> right, double smallest, std::span<double> x) {
+int PetscRows::solve(std::span<const double> right, double smallest, std::span<double> x) {
   const std::lock_guard lock(one_at_a_time());
   const QuietErrors quiet;
   PetscScalar* values = nullptr;
@@ -153,27 +195,24 @@ int PetscSystem::solve(std::span<const double> right, double smallest, std::span
   return static_cast<int>(steps);
 }
 
-}  // namespace bezel::detail
-
 #else
 
-namespace bezel::detail {
+struct PetscRows::Impl {};
 
-struct PetscSystem::Impl {};
-
-bool PetscSystem::available() {
+bool PetscRows::available() {
   return false;
 }
-PetscSystem::PetscSystem(std::span<const std::int32_t>) {
+PetscRows::PetscRows(const RowRange&, bool) {
   throw InputError("this build of bezel has no PETSc (BEZEL_WITH_PETSC)");
 }
-PetscSystem::~PetscSystem() = default;
-void PetscSystem::add(std::span<const std::int32_t>, std::span<const double>) {}
-void PetscSystem::finish() {}
-int PetscSystem::solve(std::span<const double>, double, std::span<double>) {
+PetscRows::~PetscRows() = default;
+void PetscRows::add(std::span<const std::int32_t>, std::span<const double>) {}
+void PetscRows::finish() {}
+int PetscRows::solve(std::span<const double>, double, std::span<double>) {
   return 0;
 }
-
-}  // namespace bezel::detail
+void end_petsc() {}
 
 #endif
+
+}  // namespace bezel::detail

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bezel/transfer/distributed.hpp"
 #include "bezel/transfer/layout.hpp"
 
 namespace bezel {
@@ -23,8 +24,11 @@ TransferOptions without_bounds(TransferOptions options) {
 }  // namespace
 
 TransferSeries::TransferSeries(std::shared_ptr<const TriangleMesh> target, TransferOptions options,
-                               std::size_t memory)
-    : target_(std::move(target)), options_(std::move(options)), memory_(memory) {}
+                               std::size_t memory, Processes* processes)
+    : target_(std::move(target)),
+      options_(std::move(options)),
+      memory_(memory),
+      processes_(processes) {}
 
 bool TransferSeries::worth_keeping(const Field& field) const {
   if (options_.weight || !options_.density.empty() || !target_ ||
@@ -48,7 +52,8 @@ TransferResult TransferSeries::step(std::span<const Field> donors, bool comes_ag
                     });
   if (!keep) {
     ++geometries_;
-    return transfer(donors, target_, options_, progress);
+    return processes_ != nullptr ? processes_->transfer(donors, target_, options_, progress)
+                                 : transfer(donors, target_, options_, progress);
   }
   TransferResult result;
   double seconds = 0.0;
@@ -57,7 +62,11 @@ TransferResult TransferSeries::step(std::span<const Field> donors, bool comes_ag
         operators_, [&](const TransferOperator& o) { return o.accepts(f.space()); });
     std::size_t at = static_cast<std::size_t>(known - operators_.begin());
     if (known == operators_.end()) {
-      operators_.emplace_back(f.space_ptr(), target_, without_bounds(options_), progress);
+      const TransferOptions linear = without_bounds(options_);
+      operators_.push_back(
+          processes_ != nullptr
+              ? processes_->transfer_operator(f.space_ptr(), target_, linear, progress)
+              : TransferOperator(f.space_ptr(), target_, linear, progress));
       seconds += operators_.back().report().seconds.total;
       ++geometries_;
     }

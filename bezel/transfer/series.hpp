@@ -10,6 +10,8 @@
 
 namespace bezel {
 
+class Processes;
+
 /// Moves the fields of one time step after the other; operators are kept as long as the donor mesh
 /// stays the same, so that the geometry is done once.
 class TransferSeries {
@@ -17,9 +19,10 @@ class TransferSeries {
   /// Operators that would take more bytes than this are not made; each step is transferred anew.
   static constexpr std::size_t default_memory = std::size_t{2} << 30;
 
-  /// @param options  as in transfer(). A weight or density means a transfer anew for each step
+  /// @param options    as in transfer(). A weight or density means a transfer anew for each step
+  /// @param processes  where given, they share the work on the target elements, here on rank 0
   explicit TransferSeries(std::shared_ptr<const TriangleMesh> target, TransferOptions options = {},
-                          std::size_t memory = default_memory);
+                          std::size_t memory = default_memory, Processes* processes = nullptr);
 
   /// transfer() for one step.
   /// @param comes_again  the next step has the same mesh, so an operator is worth making
@@ -35,6 +38,7 @@ class TransferSeries {
   std::shared_ptr<const TriangleMesh> target_;
   TransferOptions options_;
   std::size_t memory_;
+  Processes* processes_;
   std::vector<TransferOperator> operators_;  // of one donor mesh
   std::size_t geometries_ = 0;
 };

@@ -12,23 +12,34 @@ std::size_t place(std::int32_t e) {
   return static_cast<std::size_t>(e);
 }
 
-/// Where a number is in an ascending list that holds it.
-std::int32_t place_in(std::span<const std::int32_t> ascending, std::int32_t number) {
-  return static_cast<std::int32_t>(std::lower_bound(ascending.begin(), ascending.end(), number) -
-                                   ascending.begin());
+/// Notes the places of the numbers of a list.
+void note_places(std::span<const std::int32_t> numbers, std::span<std::int32_t> places) {
+  std::int32_t next = 0;
+  for (const std::int32_t n : numbers) places[place(n)] = next++;
+}
+void forget_places(std::span<const std::int32_t> numbers, std::span<std::int32_t> places) {
+  for (const std::int32_t n : numbers) places[place(n)] = -1;
 }
 
+/// @param places  of the nodes, all -1 before and after
 void write_mesh(const TriangleMesh& mesh, std::span<const std::int32_t> elements,
-                MessageWriter& out) {
+                std::span<std::int32_t> places, MessageWriter& out) {
   std::vector<std::int32_t> connectivity;
+  std::vector<std::int32_t> nodes;
   for (const std::int32_t e : elements) {
-    for (const NodeId n : mesh.nodes(ElementId(e))) connectivity.push_back(n.value);
+    for (const NodeId n : mesh.nodes(ElementId(e))) {
+      connectivity.push_back(n.value);
+      if (places[n.index()] >= 0) continue;
+      places[n.index()] = 0;
+      nodes.push_back(n.value);
+    }
   }
-  std::vector<std::int32_t> nodes = connectivity;
   std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  for (std::int32_t& n : connectivity) n = place_in(nodes, n);
+  note_places(nodes, places);
+  for (std::int32_t& n : connectivity) n = places[place(n)];
+  forget_places(nodes, places);
   std::vector<Vec2> control;
+  control.reserve(nodes.size());
   for (const std::int32_t n : nodes) control.push_back(mesh.control(NodeId(n)));
   out.value(mesh.degree());
   out.list(control);
@@ -54,19 +65,13 @@ MeshPart read_mesh(MessageReader& in) {
 
 void write_group(const Share& share, const Group& g, MessageWriter& out) {
   const Space& donor = *g.donor_space;
-  const auto nc = static_cast<std::size_t>(g.components);
   std::vector<int> degrees;
   std::vector<Frame> frames;
-  std::vector<double> scaled;
-  std::vector<double> mass;
   for (const std::int32_t d : share.donors) {
     degrees.push_back(donor.degree(ElementId(d)));
     if (donor.basis() == Basis::physical) frames.push_back(donor.frame(ElementId(d)));
-    const auto own = g.donor_scaled(d);
-    scaled.insert(scaled.end(), own.begin(), own.end());
-    const double* own_mass = g.donor_mass.data() + place(d) * nc;
-    mass.insert(mass.end(), own_mass, own_mass + nc);
   }
+  out.value(g.of_basis());
   out.value(g.components);
   out.value(g.donor_degree);
   out.value(donor.basis());
@@ -74,12 +79,23 @@ void write_group(const Share& share, const Group& g, MessageWriter& out) {
   out.list(frames);
   out.value(g.target_space->basis());
   out.value(g.target_space->uniform_degree());
+  if (g.of_basis()) return;
+  const auto nc = static_cast<std::size_t>(g.components);
+  std::vector<double> scaled;
+  std::vector<double> mass;
+  for (const std::int32_t d : share.donors) {
+    const auto own = g.donor_scaled(d);
+    scaled.insert(scaled.end(), own.begin(), own.end());
+    const double* own_mass = g.donor_mass.data() + place(d) * nc;
+    mass.insert(mass.end(), own_mass, own_mass + nc);
+  }
   out.list(scaled);
   out.list(mass);
 }
 
-Group read_group(const OverlayMesh& donor, const OverlayMesh& target, MessageReader& in,
-                 int threads) {
+Group read_group(const OverlayMesh& donor, const OverlayMesh& target, int threads,
+                 MessageReader& in) {
+  const bool of_basis = in.value<bool>();
   const int components = in.value<int>();
   const auto donor_degree = in.value<DonorDegree>();
   const auto basis = in.value<Basis>();
@@ -91,27 +107,34 @@ Group read_group(const OverlayMesh& donor, const OverlayMesh& target, MessageRea
                          ? Space::discontinuous(donor.mesh, std::move(degrees), std::move(frames))
                          : Space::discontinuous(donor.mesh, std::move(degrees), basis);
   auto target_space = Space::discontinuous(target.mesh, target_degree, target_basis);
+  if (of_basis) {
+    return Group(donor, target, std::move(donor_space), std::move(target_space), donor_degree,
+                 threads);
+  }
   const std::vector<double> scaled = in.list<double>();
   std::vector<double> mass = in.list<double>();
   return Group(donor, target, std::move(donor_space), std::move(target_space), components,
                donor_degree, scaled, std::move(mass), threads);
 }
 
+/// Elements of a part by their numbers in the whole.
+void write_numbers(const OverlayMesh& mesh, std::span<const std::int32_t> elements,
+                   MessageWriter& out) {
+  std::vector<std::int32_t> of_whole;
+  for (const std::int32_t e : elements) of_whole.push_back(mesh.number_of(e));
+  out.list(of_whole);
+}
+
 void write_chunk(const ChunkResult& chunk, const OverlayMesh& donor, const OverlayMesh& target,
                  MessageWriter& out) {
-  const auto numbers = [&](const OverlayMesh& mesh, std::span<const std::int32_t> elements) {
-    std::vector<std::int32_t> of_whole;
-    for (const std::int32_t e : elements) of_whole.push_back(mesh.number_of(e));
-    out.list(of_whole);
-  };
-  numbers(donor, chunk.given.donor);
-  numbers(target, chunk.given.target);
+  write_numbers(donor, chunk.given.donor, out);
+  write_numbers(target, chunk.given.target, out);
   out.list(chunk.given.area);
   out.list(chunk.given.massed);
   out.list(chunk.given.mass);
   out.value(chunk.counts);
   out.list(chunk.made);
-  numbers(target, chunk.element_made.element);
+  write_numbers(target, chunk.element_made.element, out);
   out.list(chunk.element_made.mass);
   std::vector<std::int32_t> uncovered;
   std::vector<double> uncovered_area;
@@ -119,7 +142,7 @@ void write_chunk(const ChunkResult& chunk, const OverlayMesh& donor, const Overl
     uncovered.push_back(element.value);
     uncovered_area.push_back(area);
   }
-  numbers(target, uncovered);
+  write_numbers(target, uncovered, out);
   out.list(uncovered_area);
   out.value(chunk.extension);
   for (const double x : {chunk.uncovered_area, chunk.max_partition_residual, chunk.max_joint_gap,
@@ -153,6 +176,25 @@ ChunkResult read_chunk(MessageReader& in) {
   return chunk;
 }
 
+/// All but the products, which only the solve needs.
+void write_blocks(const ElementBlocks& blocks, const OverlayMesh& donor, MessageWriter& out) {
+  out.value(static_cast<std::uint64_t>(blocks.columns));
+  write_numbers(donor, blocks.donor, out);
+  out.list(blocks.mass);
+  out.list(blocks.value);
+  write_numbers(donor, blocks.made_donor, out);
+  out.list(blocks.made);
+}
+
+void read_blocks(MessageReader& in, ElementBlocks& blocks) {
+  blocks.reset(static_cast<std::size_t>(in.value<std::uint64_t>()));
+  blocks.donor = in.list<std::int32_t>();
+  blocks.mass = in.list<double>();
+  blocks.value = in.list<double>();
+  blocks.made_donor = in.list<std::int32_t>();
+  blocks.made = in.list<double>();
+}
+
 double clock_seconds(clockid_t clock) {
   timespec now{};
   clock_gettime(clock, &now);
@@ -171,28 +213,48 @@ double Stopwatch::cpu_seconds() const {
   return clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu_start_;
 }
 
-void write_share(const Share& share, const OverlayMesh& donor, const OverlayMesh& target,
-                 const FrontSearch& search, std::span<const Group> groups,
-                 const TransferOptions& options, MessageWriter& out) {
-  out.value(options.uncovered);
-  out.value(options.conserve);
-  write_mesh(*donor.mesh, share.donors, out);
-  out.value(search.connected());
-  write_mesh(*target.mesh, share.targets, out);
+ShareWriter::ShareWriter(const OverlayMesh& donor, const OverlayMesh& target,
+                         const FrontSearch& search, std::span<const Group> groups,
+                         const TransferOptions& options, bool blocks)
+    : donor_(donor),
+      target_(target),
+      search_(search),
+      groups_(groups),
+      options_(options),
+      blocks_(blocks),
+      rim_(rim_donors(donor, target, search)),
+      donor_place_(donor.mesh->node_count(), -1),
+      target_place_(target.mesh->node_count(), -1),
+      element_place_(target.element_count(), -1) {}
+
+void ShareWriter::write(const Share& share, MessageWriter& out) {
+  out.value(blocks_);
+  out.value(options_.uncovered);
+  out.value(options_.conserve);
+  write_mesh(*donor_.mesh, share.donors, donor_place_, out);
+  std::vector<std::uint8_t> rim;
+  for (const std::int32_t d : share.donors) rim.push_back(rim_[place(d)]);
+  out.list(rim);
+  out.value(search_.connected());
+  write_mesh(*target_.mesh, share.targets, target_place_, out);
+  note_places(share.targets, element_place_);
   std::vector<std::int32_t> own;
-  for (const std::int32_t t : share.own) own.push_back(place_in(share.targets, t));
+  for (const std::int32_t t : share.own) own.push_back(element_place_[place(t)]);
+  forget_places(share.targets, element_place_);
   out.list(own);
-  out.value(static_cast<std::uint64_t>(groups.size()));
-  for (const Group& g : groups) write_group(share, g, out);
+  out.value(static_cast<std::uint64_t>(groups_.size()));
+  for (const Group& g : groups_) write_group(share, g, out);
 }
 
 ShareReport work_on(MessageReader& in, int threads, MessageWriter& out) {
   const Stopwatch watch;
   TransferOptions options;
   options.threads = threads;
+  const bool with_blocks = in.value<bool>();
   options.uncovered = in.value<Uncovered>();
   options.conserve = in.value<Conserve>();
   MeshPart donor_part = read_mesh(in);
+  const std::vector<std::uint8_t> rim = in.list<std::uint8_t>();
   const bool connected = in.value<bool>();
   MeshPart target_part = read_mesh(in);
   const std::vector<std::int32_t> own = in.list<std::int32_t>();
@@ -206,18 +268,27 @@ ShareReport work_on(MessageReader& in, int threads, MessageWriter& out) {
   OverlayMesh target(std::move(target_part.mesh), "target", threads);
   target.numbers = std::move(target_part.numbers);
   for (std::uint64_t i = 0; i < group_count; ++i)
-    groups.push_back(read_group(donor, target, in, threads));
+    groups.push_back(read_group(donor, target, threads, in));
   const FrontSearch search(donor, connected);
+  // One writer per chunk: a chunk is one task's.
+  std::vector<MessageWriter> blocks(with_blocks ? (own.size() + chunk_size - 1) / chunk_size : 0);
+  VisitBlocks visit;
+  if (with_blocks) {
+    visit = [&](std::size_t index, std::int32_t, const ElementBlocks& of_element) {
+      write_blocks(of_element, donor, blocks[index / chunk_size]);
+    };
+  }
   const std::vector<ChunkResult> chunks =
-      sweep_elements(donor, target, search, groups, own, options, {});
+      sweep_elements(donor, target, search, groups, own, options, {}, visit, rim);
   for (const ChunkResult& chunk : chunks) {
     work.pairs += chunk.counts.pairs;
     write_chunk(chunk, donor, target, out);
   }
-  for (Group& g : groups) {
+  for (MessageWriter& of_chunk : blocks) out.list(of_chunk.take());
+  for (std::size_t i = 0; i < groups.size() && !with_blocks; ++i) {
     std::vector<double> coefficients;
     for (const std::int32_t t : own) {
-      const auto of_element = g.target_out(t);
+      const auto of_element = groups[i].target_out(t);
       coefficients.insert(coefficients.end(), of_element.begin(), of_element.end());
     }
     out.list(coefficients);
@@ -228,9 +299,22 @@ ShareReport work_on(MessageReader& in, int threads, MessageWriter& out) {
 }
 
 void read_results(const Share& share, MessageReader& in, std::span<Group> groups,
-                  std::span<ChunkResult> chunks) {
+                  std::span<ChunkResult> chunks, const VisitBlocks& visit) {
   for (std::size_t c = 0; c < share.chunk_count; ++c)
     chunks[share.first_chunk + c] = read_chunk(in);
+  if (visit) {
+    ElementBlocks blocks;
+    for (std::size_t c = 0; c < share.chunk_count; ++c) {
+      const std::vector<std::byte> bytes = in.list<std::byte>();
+      MessageReader of_chunk(bytes);
+      const std::size_t end = std::min(share.own.size(), (c + 1) * chunk_size);
+      for (std::size_t i = c * chunk_size; i < end; ++i) {
+        read_blocks(of_chunk, blocks);
+        visit(share.first_chunk * chunk_size + i, share.own[i], blocks);
+      }
+    }
+    return;
+  }
   for (Group& g : groups) {
     const std::vector<double> coefficients = in.list<double>();
     auto from = coefficients.begin();

@@ -65,28 +65,6 @@ class WorkerPool {
   std::vector<std::unique_ptr<Worker>> free_;
 };
 
-/// Nonzero for the donor elements that may lie partly outside the target mesh: those near its
-/// boundary. Of parts of meshes, whose boundaries say nothing, none: empty.
-std::vector<std::uint8_t> rim_donors(const OverlayMesh& donor, const OverlayMesh& target,
-                                     const FrontSearch& search) {
-  if (!donor.numbers.empty() || !target.numbers.empty()) return {};
-  std::vector<std::uint8_t> rim(donor.element_count(), 0);
-  FrontSearch::Memory memory;
-  std::vector<std::int32_t> near, found;
-  for (std::size_t e = 0; e < target.edge_sides.size(); ++e) {
-    const auto& sides = target.edge_sides[e];
-    if (sides[0] != exterior && sides[1] != exterior) continue;
-    Box2 box = target.edge_box(static_cast<std::int32_t>(e));
-    const double room = 1e-9 * box.diameter();
-    box.lo -= Vec2{{room, room}};
-    box.hi += Vec2{{room, room}};
-    near.swap(found);
-    search.query(box, near, memory, found);
-    for (const std::int32_t d : found) rim[static_cast<std::size_t>(d)] = 1;
-  }
-  return rim;
-}
-
 std::string uncovered_message(const std::vector<std::pair<ElementId, double>>& elements,
                               double area) {
   std::string message = "the donor mesh does not cover the target mesh: area " +
@@ -106,17 +84,38 @@ std::string uncovered_message(const std::vector<std::pair<ElementId, double>>& e
 
 }  // namespace
 
+std::vector<std::uint8_t> rim_donors(const OverlayMesh& donor, const OverlayMesh& target,
+                                     const FrontSearch& search) {
+  std::vector<std::uint8_t> rim(donor.element_count(), 0);
+  FrontSearch::Memory memory;
+  std::vector<std::int32_t> near, found;
+  for (std::size_t e = 0; e < target.edge_sides.size(); ++e) {
+    const auto& sides = target.edge_sides[e];
+    if (sides[0] != exterior && sides[1] != exterior) continue;
+    Box2 box = target.edge_box(static_cast<std::int32_t>(e));
+    const double room = 1e-9 * box.diameter();
+    box.lo -= Vec2{{room, room}};
+    box.hi += Vec2{{room, room}};
+    near.swap(found);
+    search.query(box, near, memory, found);
+    for (const std::int32_t d : found) rim[static_cast<std::size_t>(d)] = 1;
+  }
+  return rim;
+}
+
 std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayMesh& target,
                                         const FrontSearch& search, std::span<Group> groups,
                                         std::span<const std::int32_t> elements,
                                         const TransferOptions& options, const Progress& progress,
-                                        const VisitBlocks& visit) {
+                                        const VisitBlocks& visit,
+                                        std::span<const std::uint8_t> part_rim) {
   const std::size_t components = component_count(groups);
   const std::size_t chunks = (elements.size() + chunk_size - 1) / chunk_size;
   std::vector<ChunkResult> results(chunks);
   WorkerPool pool(
       [&] { return std::make_unique<Worker>(donor, target, search, groups, options.uncovered); });
-  const std::vector<std::uint8_t> rim = rim_donors(donor, target, search);
+  std::vector<std::uint8_t> rim(part_rim.begin(), part_rim.end());
+  if (donor.numbers.empty()) rim = rim_donors(donor, target, search);
   std::mutex progress_mutex;
   std::size_t chunks_done = 0;
   parallel_for(
@@ -252,12 +251,12 @@ Swept balance(std::span<const ChunkResult> chunks, std::span<const double> donor
   return swept;
 }
 
-Swept sweep(const OverlayMesh& donor, const OverlayMesh& target, std::span<Group> groups,
-            const TransferOptions& options, const Progress& progress, const VisitBlocks& visit) {
-  const FrontSearch search(donor);
-  const std::vector<ChunkResult> chunks = sweep_elements(
-      donor, target, search, groups, target.spatial_order(), options, progress, visit);
-  return balance(chunks, donor.element_area, component_count(groups), options.uncovered);
+std::vector<ChunkResult> sweep_here(const OverlayMesh& donor, const OverlayMesh& target,
+                                    const FrontSearch& search, std::span<Group> groups,
+                                    const TransferOptions& options, const Progress& progress,
+                                    const VisitBlocks& visit) {
+  return sweep_elements(donor, target, search, groups, target.spatial_order(), options, progress,
+                        visit);
 }
 
 std::size_t component_count(std::span<const Group> groups) {

@@ -12,6 +12,7 @@
 #include "bezel/transfer/conserve.hpp"
 #include "bezel/transfer/element_transfer.hpp"
 #include "bezel/transfer/group.hpp"
+#include "bezel/transfer/mass_system.hpp"
 #include "bezel/transfer/overlay_mesh.hpp"
 #include "bezel/transfer/transfer.hpp"
 
@@ -47,12 +48,19 @@ using VisitBlocks =
 /// What a chunk leaves depends on its own elements and the donors near them only: a part of
 /// OverlayMesh::spatial_order() that begins at a multiple of chunk_size gives the bits of the
 /// whole.
+/// @param part_rim  on parts of meshes: rim_donors() of the whole ones
 /// @throws NumericsError where a mass matrix is singular
 std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayMesh& target,
                                         const FrontSearch& search, std::span<Group> groups,
                                         std::span<const std::int32_t> elements,
                                         const TransferOptions& options, const Progress& progress,
-                                        const VisitBlocks& visit = {});
+                                        const VisitBlocks& visit = {},
+                                        std::span<const std::uint8_t> part_rim = {});
+
+/// Per donor element, nonzero for those that may lie partly outside the target mesh: near its
+/// boundary. Of whole meshes.
+std::vector<std::uint8_t> rim_donors(const OverlayMesh& donor, const OverlayMesh& target,
+                                     const FrontSearch& search);
 
 /// What a pass found.
 struct Swept {
@@ -77,20 +85,27 @@ struct Swept {
 Swept balance(std::span<const ChunkResult> chunks, std::span<const double> donor_area,
               std::size_t components, Uncovered policy);
 
-/// sweep_elements() over all target elements, and their balance.
-/// @throws UncoveredError, NumericsError as transfer()
-Swept sweep(const OverlayMesh& donor, const OverlayMesh& target, std::span<Group> groups,
-            const TransferOptions& options, const Progress& progress,
-            const VisitBlocks& visit = {});
-
 /// Works on all target elements: what sweep_elements() does with OverlayMesh::spatial_order(), here
 /// or elsewhere.
 using Sweeper = std::function<std::vector<ChunkResult>(
     const OverlayMesh& donor, const OverlayMesh& target, const FrontSearch& search,
-    std::span<Group> groups, const TransferOptions& options, const Progress& progress)>;
+    std::span<Group> groups, const TransferOptions& options, const Progress& progress,
+    const VisitBlocks& visit)>;
 
-/// transfer() with the target elements worked on by `sweeper`.
-TransferResult transfer_by(const Sweeper& sweeper, std::span<const Field> donors,
+/// The Sweeper of this process.
+std::vector<ChunkResult> sweep_here(const OverlayMesh& donor, const OverlayMesh& target,
+                                    const FrontSearch& search, std::span<Group> groups,
+                                    const TransferOptions& options, const Progress& progress,
+                                    const VisitBlocks& visit = {});
+
+/// Who does what can be left to others: this process alone, unless told otherwise.
+struct Crew {
+  Sweeper sweep = sweep_here;
+  MassSystemMaker mass_system = {};  ///< of MassMethod::petsc; see ContinuousMass
+};
+
+/// transfer() by a crew.
+TransferResult transfer_by(const Crew& crew, std::span<const Field> donors,
                            const std::shared_ptr<const TriangleMesh>& target,
                            const TransferOptions& options, const Progress& progress);
 

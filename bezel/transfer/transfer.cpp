@@ -130,28 +130,23 @@ void check_arguments(std::span<const Field> donors,
 
 TransferResult transfer(std::span<const Field> donors, std::shared_ptr<const TriangleMesh> target,
                         const TransferOptions& options, const Progress& progress) {
-  const auto here = [](const detail::OverlayMesh& from, const detail::OverlayMesh& to,
-                       const detail::FrontSearch& search, std::span<detail::Group> groups,
-                       const TransferOptions& how, const Progress& done) {
-    return detail::sweep_elements(from, to, search, groups, to.spatial_order(), how, done);
-  };
-  return detail::transfer_by(here, donors, target, options, progress);
+  return detail::transfer_by({}, donors, target, options, progress);
 }
 
-TransferResult detail::transfer_by(const Sweeper& sweeper, std::span<const Field> donors,
+TransferResult detail::transfer_by(const Crew& crew, std::span<const Field> donors,
                                    const std::shared_ptr<const TriangleMesh>& target_mesh,
                                    const TransferOptions& options, const Progress& progress) {
   const auto start = clock::now();
   check_arguments(donors, target_mesh, options);
   if (options.weight || !options.density.empty())
-    return detail::transfer_weighted(sweeper, donors, target_mesh, options, progress);
+    return detail::transfer_weighted(crew, donors, target_mesh, options, progress);
   const detail::OverlayMesh donor(donors.front().space().mesh(), "donor", options.threads);
   const detail::OverlayMesh target(target_mesh, "target", options.threads);
   Plan plan = make_plan(donors, target_mesh, donor, target, options);
   const detail::FrontSearch search(donor);
   const double prepared = seconds_since(start);
   std::vector<detail::ChunkResult> chunks =
-      sweeper(donor, target, search, plan.groups, options, progress);
+      crew.sweep(donor, target, search, plan.groups, options, progress, {});
   const auto swept_at = clock::now();
   detail::Swept swept = detail::balance(chunks, donor.element_area,
                                         detail::component_count(plan.groups), options.uncovered);
@@ -209,7 +204,8 @@ TransferResult detail::transfer_by(const Sweeper& sweeper, std::span<const Field
       };
     }
     const auto solve_start = clock::now();
-    continuous = detail::make_continuous(plan.groups, donor, target, search, options, limits);
+    continuous = detail::make_continuous(plan.groups, donor, target, search, options,
+                                         crew.mass_system, limits);
     solve_seconds = seconds_since(solve_start);
     report.seconds.solve += solve_seconds;
   }
@@ -310,7 +306,7 @@ std::vector<OverlapArea> overlap_areas(std::shared_ptr<const TriangleMesh> donor
   options.threads = threads;
   std::vector<OverlapArea> all;
   for (const detail::ChunkResult& chunk :
-       detail::sweep_elements(donor, target, search, {}, target.spatial_order(), options, {})) {
+       detail::sweep_here(donor, target, search, {}, options, {})) {
     if (chunk.inconsistent >= 0) {
       throw NumericsError("the common refinement is inconsistent at target triangle " +
                           std::to_string(chunk.inconsistent));

@@ -209,7 +209,9 @@ HWY_INLINE Lanes mul_add(double a, const Lanes& b, const Lanes& c) {
 }
 
 HWY_INLINE double sum_of(const Lanes& x) {
-  return sum_of_lanes(x);
+  alignas(64) double numbers[lanes];
+  store(x, numbers);
+  return sum_of_lanes(numbers);
 }
 
 }  // namespace bezel::detail::HWY_NAMESPACE

@@ -272,7 +272,7 @@ Field added(const Field& a, const Field& b) {
 
 }  // namespace
 
-TransferResult transfer_weighted(const Sweeper& sweeper, std::span<const Field> donors,
+TransferResult transfer_weighted(const Crew& crew, std::span<const Field> donors,
                                  const std::shared_ptr<const TriangleMesh>& target,
                                  const TransferOptions& options, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
@@ -305,7 +305,7 @@ TransferResult transfer_weighted(const Sweeper& sweeper, std::span<const Field> 
                                 weight_degree(*options.weight, target, "target", options.threads));
     weight = weight_field(*options.weight, degree, target, "target", options.threads);
   }
-  const TransferResult moved = transfer_by(sweeper, products.fields, target, plain, progress);
+  const TransferResult moved = transfer_by(crew, products.fields, target, plain, progress);
 
   TransferResult result;
   result.report = moved.report;
@@ -340,8 +340,8 @@ TransferResult transfer_weighted(const Sweeper& sweeper, std::span<const Field> 
     const std::size_t p = at(degree_of(k));
     if (!continuous_spaces[p]) continuous_spaces[p] = Space::continuous(target, degree_of(k));
     if (!masses[p]) {
-      masses[p] = std::make_unique<WeightedContinuous>(continuous_spaces[p], weights,
-                                                       options.mass_method, options.threads);
+      masses[p] = std::make_unique<WeightedContinuous>(
+          continuous_spaces[p], weights, options.mass_method, crew.mass_system, options.threads);
     }
     auto found = (*masses[p])(moved_product(k), whole || products.carried(k) ? carrier : nullptr);
     recovered[k].mass = std::move(found.mass);

@@ -10,7 +10,7 @@ namespace bezel::detail {
 
 /// transfer_by() with a weight or a density: the products of the fields with them are transferred,
 /// and the fields recovered element by element.
-TransferResult transfer_weighted(const Sweeper& sweeper, std::span<const Field> donors,
+TransferResult transfer_weighted(const Crew& crew, std::span<const Field> donors,
                                  const std::shared_ptr<const TriangleMesh>& target,
                                  const TransferOptions& options, const Progress& progress);
 

@@ -43,10 +43,10 @@ int reference_degree(const Field& f) {
 
 WeightedContinuous::WeightedContinuous(std::shared_ptr<const Space> space,
                                        std::span<const Field* const> weights, MassMethod method,
-                                       int threads)
+                                       const MassSystemMaker& make_system, int threads)
     : threads_(threads),
       weight_(whole_weight(weights)),
-      mass_(std::move(space), {}, threads, method, weight_ ? &*weight_ : nullptr) {}
+      mass_(std::move(space), {}, threads, method, weight_ ? &*weight_ : nullptr, make_system) {}
 
 /// Coefficients c of each element with M_e c = integrals of (moved - mean carrier) phi, M_e its
 /// weighted mass matrix; shape (coefficient_count, components).

@@ -18,7 +18,7 @@ class WeightedContinuous {
   /// @throws InputError when their product has too high a degree; NumericsError naming a triangle
   ///         where it is not positive
   WeightedContinuous(std::shared_ptr<const Space> space, std::span<const Field* const> weights,
-                     MassMethod method, int threads);
+                     MassMethod method, const MassSystemMaker& make_system, int threads);
 
   struct Recovered {
     std::vector<double> coefficients;

@@ -35,6 +35,10 @@ CASES = {
                 "mesh disc --radius 0.9 --center 1,0 --size 0.06 --degree 2 --seed 2 -o target.bzl"], "--weight x"),
 }
 
+DONOR, TARGET = CASES["weight"][0][:1], CASES["weight"][0][2:]
+CASES["density"] = (DONOR + ["sample square.bzl -f rho=2+y -f u=sin(3*x)+y^2 --degree 2 -o donor.bzl"] + TARGET,
+                    "--density rho")
+
 
 class Failure(Exception):
     pass
@@ -49,10 +53,10 @@ class Folder:
     def __init__(self, path, mpiexec, flag, bezel):
         self.path, self.mpiexec, self.flag, self.bezel = path, mpiexec, flag, bezel
 
-    def run(self, words, processes=None):
+    def run(self, words, processes=None, environment=None):
         launcher = [] if processes is None else [self.mpiexec, self.flag, str(processes)]
         return subprocess.run(launcher + [self.bezel] + words.split(), cwd=self.path, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=250)
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=250, env=environment)
 
     def must(self, words, processes=None):
         done = self.run(words, processes)
@@ -81,14 +85,115 @@ def compare(folder, commands, options):
         expect(folder.bytes_of("one.bzl") == folder.bytes_of("many.bzl"), f"{n} processes: other bytes")
         many = folder.json_of("many.json")
         expect(without_times(one) == without_times(many), f"{n} processes: another report")
-        if n == 1:
-            expect("processes" not in many, "one process reports several")
-            continue
-        shares = many["processes"]["shares"]
-        expect(len(shares) == n and all(s["targets"] > 0 for s in shares), f"{n} processes: {shares}")
-        expect(sum(s["pairs"] for s in shares) == many["pairs"], f"{n} processes: pairs of shares")
-        expect(many["processes"]["alone_cpu_seconds"] > 0, f"{n} processes: no time alone")
-        expect(all(s["bytes_in"] > 0 and s["bytes_out"] > 0 for s in shares[1:]), f"{n} processes: no bytes")
+        check_shares(many, n, many["pairs"])
+
+
+def check_shares(report, n, pairs):
+    if n == 1:
+        expect("processes" not in report, "one process reports several")
+        return
+    shares = report["processes"]["shares"]
+    expect(len(shares) == n and all(s["targets"] > 0 for s in shares), f"{n} processes: {shares}")
+    expect(sum(s["pairs"] for s in shares) == pairs, f"{n} processes: pairs of shares")
+    expect(report["processes"]["alone_cpu_seconds"] > 0, f"{n} processes: no time alone")
+    expect(all(s["bytes_in"] > 0 and s["bytes_out"] > 0 for s in shares[1:]), f"{n} processes: no bytes")
+
+
+def matrix(folder):
+    """The operator's matrix, and fields moved by it, where meshes lie in each other in part, with bounds."""
+    for command in ("mesh square --width 2 --size 0.1 --degree 2 -o square.bzl",
+                    "sample square.bzl -f u=sin(3*x)+y^2 -f v=x --degree 2 -o donor.bzl",
+                    "mesh disc --radius 1.1 --size 0.09 --degree 2 --seed 2 -o target.bzl"):
+        folder.must(command)
+    for options in ("--uncovered extend", "--uncovered zero --degree 1 --bounds -9,9"):
+        words = f"transfer donor.bzl target.bzl {options} --report report.json -o"
+        folder.must(f"--threads 1 {words} one.bzl --matrix one.mtx")
+        for n in PROCESSES:
+            folder.must(f"{words} many.bzl --matrix many.mtx", n)
+            for kind in ("bzl", "mtx"):
+                expect(folder.bytes_of(f"one.{kind}") == folder.bytes_of(f"many.{kind}"),
+                       f"{options}, {n} processes: other bytes in .{kind}")
+            report = folder.json_of("report.json")
+            check_shares(report, n, report["pairs"])
+
+
+def series(folder):
+    """Steps on the same mesh, by an operator, and on another one, anew; with a weight all are moved anew."""
+    for command in ("mesh rectangle --width 2 --height 2 --center 1,0 --size 0.1 --degree 2 -o square.bzl",
+                    "mesh rectangle --width 2 --height 2 --center 1,0 --size 0.1 --degree 2 --seed 3 -o other.bzl",
+                    "mesh disc --radius 0.9 --center 1,0 --size 0.07 --degree 2 --seed 2 -o target.bzl"):
+        folder.must(command)
+    for step, mesh in enumerate(("square", "square", "other")):
+        folder.must(f"sample {mesh}.bzl -f u=sin(3*x)+y^2*{step} --degree 2 -o step{step}.bzl")
+    with open(os.path.join(folder.path, "steps.pvd"), "w", encoding="ascii") as f:
+        f.write('<VTKFile type="Collection" version="0.1"><Collection>\n')
+        for step in range(3):
+            f.write(f'<DataSet timestep="{step / 2}" file="step{step}.bzl"/>\n')
+        f.write("</Collection></VTKFile>\n")
+    os.mkdir(os.path.join(folder.path, "many"))  # the same names in both folders
+    os.mkdir(os.path.join(folder.path, "one"))
+    for options in ("--bounds local", "--weight x"):
+        folder.must(f"--threads 1 transfer steps.pvd target.bzl {options} -o one/moved.pvd --report one.json")
+        one = folder.json_of("one.json")
+        for n in PROCESSES:
+            folder.must(f"transfer steps.pvd target.bzl {options} -o many/moved.pvd --report many.json", n)
+            for name in ["moved.pvd"] + [f"moved_{step:04}.vtu" for step in range(3)]:
+                expect(folder.bytes_of(f"one/{name}") == folder.bytes_of(f"many/{name}"),
+                       f"{options}, {n} processes: other bytes in {name}")
+            many = folder.json_of("many.json")
+            check_shares(many, n, sum(s["pairs"] for s in many["steps"][1 if "bounds" in options else 0:]))
+            for report in (one, many):
+                report["steps"] = [without_times(step) for step in report["steps"]]
+            expect(without_times(one) == without_times(many), f"{options}, {n} processes: another report")
+
+
+def largest_difference(folder, a, b):
+    """Of the coefficients of two fields on one mesh, relative to the largest."""
+    one, two = folder.bytes_of(a).decode().split(), folder.bytes_of(b).decode().split()
+    start = one.index("coefficients") if "coefficients" in one else one.index("field")
+    expect(one[:start] == two[:start] and len(one) == len(two), f"{a} and {b} lie on other meshes")
+    number = lambda word: float.fromhex(word) if word.startswith(("0x", "-0x")) else 0.0
+    values = [(number(v), number(w)) for v, w in zip(one[start:], two[start:])]
+    largest = max(abs(v) for v, _ in values)
+    expect(largest > 0.5, f"{a}: no coefficients")
+    return max(abs(v - w) for v, w in values) / largest
+
+
+def petsc(folder):
+    """The mass system with its rows spread over the processes: to 1e-13 the field of one process."""
+    for command in ("mesh rectangle --width 2 --height 2 --center 1,0 --size 0.1 --degree 2 -o square.bzl",
+                    "sample square.bzl -f u=sin(3*x)+y^2 --degree 2 -o donor.bzl",
+                    "mesh disc --radius 0.9 --center 1,0 --size 0.05 --degree 2 --seed 2 -o target.bzl"):
+        folder.must(command)
+    for options in ("", "--degree 3 --keep-boundary", "--weight x", "--bounds -9,9"):
+        words = f"transfer donor.bzl target.bzl --continuity cg {options}"
+        folder.must(f"{words} -o one.bzl")
+        folder.must(f"{words} --mass-method petsc -o petsc.bzl")
+        for n in PROCESSES:
+            folder.must(f"{words} --mass-method petsc -o many.bzl --report many.json", n)
+            for other in ("one.bzl", "petsc.bzl"):
+                difference = largest_difference(folder, other, "many.bzl")
+                expect(difference <= 1e-13, f"{options}, {n} processes: {difference} from {other}")
+            if n == 1:
+                expect(folder.bytes_of("petsc.bzl") == folder.bytes_of("many.bzl"), "one process: other bytes")
+            report = folder.json_of("many.json")
+            check_shares(report, n, report["pairs"])
+            solve = report["fields"][0]["mass_solve"]
+            expect(solve["method"] == "petsc" and solve["iterations"] > 0 and solve["relative_residual"] <= 1e-14,
+                   f"{options}, {n} processes: {solve}")
+    # What PETSc refuses, it refuses on all processes.
+    before = sorted(os.listdir(folder.path))
+    for wrong in ("-bezel_mass_pc_type none_such", "-bezel_mass_ksp_type none_such"):
+        environment = dict(os.environ, PETSC_OPTIONS=wrong)
+        words = "transfer donor.bzl target.bzl --continuity cg --mass-method petsc -o none.bzl"
+        one = folder.run(words, environment=environment)
+        many = folder.run(words, 3, environment)
+        ours = [line for line in many.stderr.splitlines() if line.startswith("error: ")]
+        expect(one.returncode == 4 and many.returncode == 4, f"{wrong}: exit {one.returncode}, {many.returncode}")
+        expect(len(ours) == 1 and ours[0][:40] == one.stderr[:40], f"{wrong}: {many.stderr} instead of {one.stderr}")
+        expect(sorted(os.listdir(folder.path)) == before, f"{wrong}: left files")
+    many = folder.run(words, 3, dict(os.environ, PETSC_OPTIONS="-bezel_mass_pc_type icc"))  # for one process only
+    expect(many.returncode == 4 and many.stderr.count("error: PETSc failed to solve") == 1, f"icc: {many.stderr}")
 
 
 def tiny_last_triangle(path):
@@ -139,10 +244,8 @@ def errors(folder):
             expect(many.stdout == "", f"'{words}' by {n}: {many.stdout}")
             expect(sorted(os.listdir(folder.path)) == before, f"'{words}' by {n}: left files")
     for words, message in (("info donor.bzl", "error: info runs as one process, found 2: start it without mpirun"),
-                           ("transfer donor.bzl tiny.msh -o out.bzl --matrix m.mtx",
-                            "error: --matrix: by one process only; see 'bezel transfer --help'"),
-                           ("transfer steps.pvd tiny.msh -o out.pvd",
-                            "error: a time series is moved by one process: start it without mpirun; see "
+                           ("transfer donor.bzl tiny.msh -o out.bzl --matrix m.mtx --conserve total",
+                            "error: --matrix: not with --continuity cg or --conserve total; see "
                             "'bezel transfer --help'")):
         many = folder.run(words, 2)
         ours = [line for line in many.stderr.splitlines() if line.startswith("error: ")]
@@ -155,10 +258,10 @@ def main():
     with tempfile.TemporaryDirectory() as path:
         folder = Folder(path, mpiexec, flag, bezel)
         try:
-            if name == "errors":
-                errors(folder)
-            else:
+            if name in CASES:
                 compare(folder, *CASES[name])
+            else:
+                {"matrix": matrix, "series": series, "petsc": petsc, "errors": errors}[name](folder)
         except Failure as failure:
             sys.exit(f"{name}: {failure}")
 

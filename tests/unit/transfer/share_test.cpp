@@ -6,6 +6,8 @@
 #include <string>
 
 #include "bezel/base/error.hpp"
+#include "bezel/base/random.hpp"
+#include "bezel/transfer/operator_by.hpp"
 #include "support/fields.hpp"
 #include "support/mesh_pairs.hpp"
 
@@ -17,13 +19,15 @@ using test::MeshPtr;
 /// Works on the shares one after the other, each from its message alone.
 Sweeper in_shares(std::size_t count) {
   return [count](const OverlayMesh& donor, const OverlayMesh& target, const FrontSearch& search,
-                 std::span<Group> groups, const TransferOptions& options, const Progress&) {
+                 std::span<Group> groups, const TransferOptions& options, const Progress&,
+                 const VisitBlocks& visit) {
     const std::vector<Share> shares = split_work(donor, target, search, count, 1);
     std::vector<ChunkResult> chunks(shares.back().first_chunk + shares.back().chunk_count);
+    ShareWriter writer(donor, target, search, groups, options, static_cast<bool>(visit));
     for (const Share& share : shares) {
       if (share.own.empty()) continue;
       MessageWriter order;
-      write_share(share, donor, target, search, groups, options, order);
+      writer.write(share, order);
       const auto bytes = order.take();
       MessageReader in(bytes);
       MessageWriter answer;
@@ -33,7 +37,7 @@ Sweeper in_shares(std::size_t count) {
       EXPECT_EQ(work.donors, static_cast<std::int64_t>(share.donors.size()));
       const auto results = answer.take();
       MessageReader out(results);
-      read_results(share, out, groups, chunks);
+      read_results(share, out, groups, chunks, visit);
       EXPECT_TRUE(out.at_end());
     }
     return chunks;
@@ -50,6 +54,22 @@ void expect_same_report(const FieldReport& a, const FieldReport& b) {
   EXPECT_EQ(a.max_element_defect, b.max_element_defect);
 }
 
+void expect_same_geometry(const TransferReport& a, const TransferReport& b) {
+  EXPECT_EQ(a.pairs, b.pairs);
+  EXPECT_EQ(a.crossings, b.crossings);
+  EXPECT_EQ(a.tangencies, b.tangencies);
+  EXPECT_EQ(a.overlaps, b.overlaps);
+  EXPECT_EQ(a.unresolved, b.unresolved);
+  EXPECT_EQ(a.uncovered_area, b.uncovered_area);
+  EXPECT_EQ(a.uncovered_elements, b.uncovered_elements);
+  EXPECT_EQ(a.extension_growth, b.extension_growth);
+  EXPECT_EQ(a.extension_moved_area, b.extension_moved_area);
+  EXPECT_EQ(a.extension_held_area, b.extension_held_area);
+  EXPECT_EQ(a.outside_area, b.outside_area);
+  EXPECT_EQ(a.max_partition_residual, b.max_partition_residual);
+  EXPECT_EQ(a.max_joint_gap, b.max_joint_gap);
+}
+
 void expect_same(const TransferResult& a, const TransferResult& b) {
   ASSERT_EQ(a.fields.size(), b.fields.size());
   for (std::size_t i = 0; i < a.fields.size(); ++i)
@@ -57,26 +77,14 @@ void expect_same(const TransferResult& a, const TransferResult& b) {
   ASSERT_EQ(a.report.fields.size(), b.report.fields.size());
   for (std::size_t i = 0; i < a.report.fields.size(); ++i)
     expect_same_report(a.report.fields[i], b.report.fields[i]);
-  EXPECT_EQ(a.report.pairs, b.report.pairs);
-  EXPECT_EQ(a.report.crossings, b.report.crossings);
-  EXPECT_EQ(a.report.tangencies, b.report.tangencies);
-  EXPECT_EQ(a.report.overlaps, b.report.overlaps);
-  EXPECT_EQ(a.report.unresolved, b.report.unresolved);
-  EXPECT_EQ(a.report.uncovered_area, b.report.uncovered_area);
-  EXPECT_EQ(a.report.uncovered_elements, b.report.uncovered_elements);
-  EXPECT_EQ(a.report.extension_growth, b.report.extension_growth);
-  EXPECT_EQ(a.report.extension_moved_area, b.report.extension_moved_area);
-  EXPECT_EQ(a.report.extension_held_area, b.report.extension_held_area);
-  EXPECT_EQ(a.report.outside_area, b.report.outside_area);
-  EXPECT_EQ(a.report.max_partition_residual, b.report.max_partition_residual);
-  EXPECT_EQ(a.report.max_joint_gap, b.report.max_joint_gap);
+  expect_same_geometry(a.report, b.report);
 }
 
 /// All shares together give the bits of the whole.
 void check(std::span<const Field> donors, const MeshPtr& target, const TransferOptions& options,
            std::size_t count = 3) {
   const TransferResult whole = transfer(donors, target, options);
-  expect_same(transfer_by(in_shares(count), donors, target, options, {}), whole);
+  expect_same(transfer_by({in_shares(count)}, donors, target, options, {}), whole);
 }
 
 MeshPtr turned(const MeshPtr& mesh, double angle, double scale, const Vec2& to) {
@@ -250,6 +258,43 @@ TEST(Share, SameBitsForSizeRatiosAndFarFromTheOrigin) {
   check({&g, 1}, turned(bent_grid(1), 0.9, 0.5, Vec2{{1e5, -1e4}}), {});
 }
 
+// Blocks, and what comes of them for fields and adjoints.
+void check_operator(const Field& f, const MeshPtr& target, const TransferOptions& options,
+                    std::size_t count = 3) {
+  const TransferOperator whole(f.space_ptr(), target, options);
+  const TransferOperator shared =
+      OperatorBy::make(in_shares(count), f.space_ptr(), target, options, {});
+  expect_same_geometry(shared.report(), whole.report());
+  EXPECT_EQ(shared.block_count(), whole.block_count());
+  expect_same(shared.transfer({&f, 1}), whole.transfer({&f, 1}));
+  RandomStream random("check_operator", 1);
+  std::vector<double> c(whole.target_space()->coefficient_count());
+  for (double& x : c) x = random.uniform() - 0.5;
+  const Field g("g", whole.target_space(), c);
+  const Field other("g", shared.target_space(), c);
+  EXPECT_TRUE(std::ranges::equal(shared.apply_adjoint(other).coefficients(),
+                                 whole.apply_adjoint(g).coefficients()));
+}
+
+TEST(Share, OperatorsHaveTheSameBlocks) {
+  const MeshPtr target = turned(test::grid_mesh(17, 1, 1.0, test::same_place), 0.3, 0.6, {});
+  TransferOptions options;
+  for (const int g : {1, 2}) {
+    std::vector<int> degrees(bent_grid(g)->element_count());
+    for (std::size_t e = 0; e < degrees.size(); ++e) degrees[e] = e < 500 ? 1 : 2;
+    check_operator(wave(Space::discontinuous(bent_grid(g), degrees)), target, options);
+  }
+  options.degree = 1;
+  check_operator(wave(Space::discontinuous(bent_grid(2), 2, Basis::physical)), target, options);
+  check_operator(wave(Space::continuous(bent_grid(1), 2)), target, options, 7);
+  // Sticks out on all sides: masses that extensions make, donors partly outside.
+  const MeshPtr larger = turned(test::grid_mesh(17, 1, 1.0, test::same_place), 0.1, 1.05, {});
+  for (const Uncovered how : {Uncovered::extend, Uncovered::zero}) {
+    options.uncovered = how;
+    check_operator(wave(Space::discontinuous(bent_grid(2), 1)), larger, options);
+  }
+}
+
 // A triangle too small for the numbers of its mass matrix, last along the curve: what goes wrong
 // in the last share is said as the whole says it.
 TEST(Share, ErrorsNameElementsOfTheWhole) {
@@ -275,7 +320,7 @@ TEST(Share, ErrorsNameElementsOfTheWhole) {
   };
   const std::string whole = message([&] { transfer({&f, 1}, target, {}); });
   EXPECT_NE(whole.find(std::to_string(grid->element_count())), std::string::npos) << whole;
-  EXPECT_EQ(message([&] { transfer_by(in_shares(3), {&f, 1}, target, {}, {}); }), whole);
+  EXPECT_EQ(message([&] { transfer_by({in_shares(3)}, {&f, 1}, target, {}, {}); }), whole);
 }
 
 TEST(Message, GivesBackWhatWasWritten) {
