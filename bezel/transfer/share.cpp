@@ -184,6 +184,7 @@ void write_blocks(const ElementBlocks& blocks, const OverlayMesh& donor, Message
   out.list(blocks.value);
   write_numbers(donor, blocks.made_donor, out);
   out.list(blocks.made);
+  out.value(blocks.area);
 }
 
 void read_blocks(MessageReader& in, ElementBlocks& blocks) {
@@ -193,6 +194,7 @@ void read_blocks(MessageReader& in, ElementBlocks& blocks) {
   blocks.value = in.list<double>();
   blocks.made_donor = in.list<std::int32_t>();
   blocks.made = in.list<double>();
+  blocks.area = in.value<double>();
 }
 
 double clock_seconds(clockid_t clock) {
