@@ -208,7 +208,8 @@ TEST(Project, StraightElementsTogetherAreThoseAlone) {
                   alone = project("f", Space::discontinuous(mesh, degrees, basis), f);
       for (std::size_t e = 0; e + 1 < degrees.size(); ++e) {
         const auto a = together.coefficients(ElementId(e)), b = alone.coefficients(ElementId(e));
-        for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 4e-15 * std::ldexp(1.0, d));
+        for (std::size_t i = 0; i < a.size(); ++i)
+          EXPECT_NEAR(a[i], b[i], 4e-15 * std::ldexp(1.0, d));
       }
       const Field one = project("f", Space::discontinuous(mesh, d, basis), f, 6, 1);
       EXPECT_TRUE(std::ranges::equal(one.coefficients(), together.coefficients()));
