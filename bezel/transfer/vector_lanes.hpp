@@ -214,6 +214,37 @@ HWY_INLINE double sum_of(const Lanes& x) {
   return sum_of_lanes(numbers);
 }
 
+/// Rows become columns.
+HWY_INLINE void transpose(Lanes* r) {
+#if HWY_TARGET <= HWY_AVX3
+  Lanes t[8], u[8];
+#pragma GCC unroll 4
+  for (int i = 0; i < 8; i += 2) {
+    t[i] = __builtin_shufflevector(r[i], r[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+    t[i + 1] = __builtin_shufflevector(r[i], r[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+#pragma GCC unroll 2
+  for (int i = 0; i < 8; i += 4) {
+#pragma GCC unroll 2
+    for (int k = 0; k < 2; ++k) {
+      u[i + k] = __builtin_shufflevector(t[i + k], t[i + k + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+      u[i + k + 2] = __builtin_shufflevector(t[i + k], t[i + k + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  }
+#pragma GCC unroll 4
+  for (int i = 0; i < 4; ++i) {
+    r[i] = __builtin_shufflevector(u[i], u[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    r[i + 4] = __builtin_shufflevector(u[i], u[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+#else
+  double rows[lanes][lanes], columns[lanes][lanes];
+  std::memcpy(rows, r, sizeof rows);
+  for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t k = 0; k < lanes; ++k) columns[k][i] = rows[i][k];
+  std::memcpy(r, columns, sizeof columns);
+#endif
+}
+
 }  // namespace bezel::detail::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
