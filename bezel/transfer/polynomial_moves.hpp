@@ -8,6 +8,8 @@
 #define BEZEL_TRANSFER_POLYNOMIAL_MOVES_HPP
 #endif
 
+#include <algorithm>
+
 #include "bezel/bernstein/index.hpp"
 #include "bezel/transfer/vector_lanes.hpp"
 #include "hwy/highway.h"
@@ -109,7 +111,7 @@ class Substitution {
 
  private:
   /// Of degree e, row j: (m0 x + m1 y)^(e-j) (m2 x + m3 y)^j, its coefficient of x^(e-i) y^i at i.
-  S rows_[P > 0 ? P : 1][P + 1][P + 1];
+  S rows_[std::max(P, 1)][P + 1][P + 1];
 };
 
 }  // namespace bezel::detail::HWY_NAMESPACE
