@@ -556,6 +556,7 @@ void ElementTransfer::process_plain(std::int32_t t, const ElementPieces& own,
     const auto nc = static_cast<std::size_t>(groups_[i].components);
     if (region_mass_.size() < regions * nc) region_mass_.resize(2 * regions * nc);
     base_[i].resize(nc + batch_padding);
+    sums_[i].reset(functions_[i], nc);
     begin_moments(i);
     add_batched(i, t, own, i == first_batched, region_mass_);
     const std::size_t c0 = masses_.size();
@@ -582,10 +583,7 @@ void ElementTransfer::finish_groups(std::int32_t t, double integrated, bool batc
     const std::span<double> result = groups_[i].target_out(t);
     c0 += nc;
     if (finish_straight(i, t, mass, integrated, result, outcome)) continue;
-    if (have_moments_[i] != 0) {
-      if (extended_[i] == 0) sums_[i].reset(functions_[i], nc);
-      moments_to_powers(i, t);
-    }
+    if (have_moments_[i] != 0) moments_to_powers(i, t);
     std::span<const double> whole;
     if (outcome.uncovered_area == 0.0 && batch) whole = whole_[i];
     finish(groups_[i], t, sums_[i], whole, mass, base_[i], integrated, result, outcome);

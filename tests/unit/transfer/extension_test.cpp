@@ -168,5 +168,27 @@ TEST_P(ThinAcross, TheAxes) {
   }
 }
 
+// Far from the target's boundary elements go a shorter way, which some regions leave.
+TEST(ThinDonors, PolynomialsComeBackInTheMiddleOfMeshes) {
+  const Formula cubic("x^3 - x*y^2 + y + 1");
+  for (const int g : {1, 2}) {
+    const auto target = grid_mesh(10, g, 0.6, test::bend(0.1, 0.1));
+    for (const double width : {8e-3, 4e-3, 2e-3}) {
+      const auto donor = grid_mesh(16, g, 1.0, [width](const Vec2& at) {
+        const double off = std::abs(at[0]);
+        const double x = off <= 0.125
+                             ? 8.0 * width * at[0]
+                             : std::copysign(width + (off - 0.125) / 0.875 * (1.0 - width), at[0]);
+        return Vec2{{0.8 * x - 0.6 * at[1], 0.6 * x + 0.8 * at[1]}};
+      });
+      const auto space = Space::discontinuous(donor, 3, Basis::physical);
+      const std::vector<Field> fields = {constant_field(space), sample("u", space, one(cubic))};
+      const TransferResult r = transfer(fields, target);
+      EXPECT_LE(error_norms(r.fields[0], one(Formula("3.25"))).max, 1e-13) << g << ' ' << width;
+      EXPECT_LE(error_norms(r.fields[1], one(cubic)).max, 2e-12) << g << ' ' << width;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace bezel
