@@ -12,6 +12,7 @@
 #include "bezel/field/element_kernel.hpp"
 #include "bezel/field/element_range.hpp"
 #include "bezel/field/piece_bounds.hpp"
+#include "bezel/numeric/numbers.hpp"
 
 namespace bezel {
 namespace {
@@ -152,7 +153,7 @@ Range ValueRanges::in_reference(const Field& field, int component, double rel_to
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Range attained{infinity, -infinity}, all = attained;  // at corners; of the coefficients
   const bool corners_tell = space_->highest_degree() <= 1;
-  std::vector<double> high(corners_tell ? 0 : elements), low(high.size());
+  Numbers high(corners_tell ? 0 : elements), low(high.size());
   const auto look = [&](auto fixed) {
     const double* c = coefficients;
     const std::size_t step = fixed() > 0 ? 1 : n;
@@ -200,35 +201,44 @@ Range ValueRanges::operator()(const Field& field, int component, double rel_tol)
   if (widening_.empty()) return in_reference(field, component, rel_tol);
   const std::size_t elements = field.mesh().element_count();
   const std::size_t n = at(field.components());
-  const double* c = field.coefficients().data() + component;
-  std::vector<double> high(elements), low(elements);
+  const double* coefficients = field.coefficients().data() + component;
+  Numbers high(elements), low(elements);
   double slack = 0.0;
   std::size_t highest = 0, lowest = 0;
-  for (std::size_t e = 0; e < elements; ++e) {
-    const ElementId id(e);
-    const auto size = at(bernstein::triangle_size(space_->degree(id)));
-    double lo = *c, hi = *c;
-    for (std::size_t i = 1; i < size; ++i) {
-      lo = std::min(lo, c[i * n]);
-      hi = std::max(hi, c[i * n]);
+  const auto look = [&](auto fixed) {
+    const double* c = coefficients;
+    const std::size_t step = fixed() > 0 ? 1 : n;
+    for (std::size_t e = 0; e < elements; ++e) {
+      const ElementId id(e);
+      const std::size_t size =
+          fixed() > 0 ? fixed() : at(bernstein::triangle_size(space_->degree(id)));
+      double lo = *c, hi = *c;
+      for (std::size_t i = 1; i < size; ++i) {
+        lo = std::min(lo, c[i * step]);
+        hi = std::max(hi, c[i * step]);
+      }
+      if (widening_[e] >= 0.0) {
+        const double wider = widening_[e] * (hi - lo);
+        slack = std::max(slack, wider);
+        lo -= wider;
+        hi += wider;
+      } else {
+        const Known known =
+            field_detail::piece_bounds(field, id, component)(field.mesh().gather(id));
+        slack = std::max(slack, known.slack);
+        lo = known.lo;
+        hi = known.hi;
+      }
+      high[e] = hi;
+      low[e] = -lo;
+      if (hi > high[highest]) highest = e;
+      if (-lo > low[lowest]) lowest = e;
+      c += size * step;
     }
-    if (widening_[e] >= 0.0) {
-      const double wider = widening_[e] * (hi - lo);
-      slack = std::max(slack, wider);
-      lo -= wider;
-      hi += wider;
-    } else {
-      const Known known = field_detail::piece_bounds(field, id, component)(field.mesh().gather(id));
-      slack = std::max(slack, known.slack);
-      lo = known.lo;
-      hi = known.hi;
-    }
-    high[e] = hi;
-    low[e] = -lo;
-    if (hi > high[highest]) highest = e;
-    if (-lo > low[lowest]) lowest = e;
-    c += size * n;
-  }
+  };
+  const int uniform = space_->uniform_degree();
+  bernstein::with_triangle_size(uniform >= 0 && n == 1 ? at(bernstein::triangle_size(uniform)) : 0,
+                                look);
   const Range known{-attained({field, component, -1.0, 0.0, 0.0}, lowest),
                     attained({field, component, 1.0, 0.0, 0.0}, highest)};
   return search_both(field, component, rel_tol, slack, known, {-low[lowest], high[highest]}, low,

@@ -173,30 +173,28 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
 }
 
 void Group::make_frames(const OverlayMesh& donor, const OverlayMesh& target, int threads) {
-  if (!donor_mapped) {
-    donor_frame.resize(donor.element_count());
-    for_blocks(donor_frame.size(), threads, [&](std::size_t e) {
-      donor_frame[e] = donor_space->basis() == Basis::physical
-                           ? donor_space->frame(ElementId(e))
-                           : affine_frame(donor.corners(static_cast<std::int32_t>(e)));
+  // Which frame an element gets depends on nothing but the element: so parts of meshes give the
+  // bits of the whole.
+  const auto of_elements = [&](const OverlayMesh& mesh, const Space& space,
+                               std::vector<Frame>& made) -> std::span<const Frame> {
+    if (space.basis() == Basis::physical && (mesh.degree > 1 || space.has_own_frames()))
+      return space.frames();
+    made.resize(mesh.element_count());
+    for_blocks(made.size(), threads, [&](std::size_t e) {
+      made[e] = space.is_own_frame(ElementId(e))
+                    ? space.frame(ElementId(e))
+                    : affine_frame(mesh.corners(static_cast<std::int32_t>(e)));
     });
+    return made;
+  };
+  // A donor's polynomials stay on their frames.
+  if (!donor_mapped) {
+    donor_frame = donor_space->basis() == Basis::physical
+                      ? donor_space->frames()
+                      : of_elements(donor, *donor_space, made_donor_frame_);
   }
-  if (target_mapped) return;
-  // The target's polynomials may stay on the triangle they are computed on when the space's frame
-  // is that triangle.
-  const bool physical = target_space->basis() == Basis::physical;
-  if (physical && target.degree == 1) other_frame.resize(target.element_count());
-  target_frame.resize(target.element_count());
-  for_blocks(target_frame.size(), threads, [&](std::size_t e) {
-    const auto t = static_cast<std::int32_t>(e);
-    target_frame[e] = !physical || target.degree == 1 ? affine_frame(target.corners(t))
-                                                      : target_space->frame(ElementId(e));
-    if (!other_frame.empty()) {
-      const bool own =
-          field_detail::is_own_frame(target_space->frame(ElementId(e)), target.corners(t));
-      other_frame[e] = own ? 0 : 1;
-    }
-  });
+  // A target's may stay on the triangle they are computed on when the space's frame is that one.
+  if (!target_mapped) target_frame = of_elements(target, *target_space, made_target_frame_);
 }
 
 std::span<const double> Group::donor_scaled(std::int32_t e) const {
@@ -260,8 +258,12 @@ std::vector<std::vector<double>> take_fields(Group& g, std::span<const std::size
           for (std::size_t m = begin; m < end; ++m) {
             const std::size_t own = components[m];
             const double* from = g.out.data() + r * all + first[m];
-            for (std::size_t n = 0; n < count; ++n)
-              for (std::size_t c = 0; c < own; ++c) buffer[n * own + c] = from[n * all + c];
+            if (own == 1) {
+              for (std::size_t n = 0; n < count; ++n) buffer[n] = from[n * all];
+            } else {
+              for (std::size_t n = 0; n < count; ++n)
+                for (std::size_t c = 0; c < own; ++c) buffer[n * own + c] = from[n * all + c];
+            }
             parts[m].insert(parts[m].end(), buffer.data(), buffer.data() + count * own);
           }
         }
