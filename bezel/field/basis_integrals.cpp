@@ -219,18 +219,21 @@ void integrate_run(const Space& space, std::size_t from, std::size_t to, const B
     out += size;
   }
   if (jacobian != nullptr) return;
-  const auto is_plain = [&](std::size_t e) {
-    return mesh.degree() == 1 &&
-           (space.basis() == Basis::reference || space.is_own_frame(ElementId(e)));
+  // All functions of a triangle's own barycentrics have one integral.
+  const auto put_plain = [&](std::size_t e) {
+    const std::array<Vec2, 3> c = corners(mesh, ElementId(e));
+    const double each = 0.5 * cross(c[1] - c[0], c[2] - c[0]) / static_cast<double>(size);
+    for (std::size_t n = 0; n < size; ++n) out[n] = each;
+    out += size;
   };
+  if (boundary == nullptr) {
+    for (std::size_t e = from; e < to; ++e) put_plain(e);
+    return;
+  }
+  const auto is_plain = [&](std::size_t e) { return space.is_own_frame(ElementId(e)); };
   for (std::size_t e = from; e < to;) {
     if (is_plain(e)) {
-      // All functions of a triangle's own barycentrics have one integral.
-      const std::array<Vec2, 3> c = corners(mesh, ElementId(e));
-      const double each = 0.5 * cross(c[1] - c[0], c[2] - c[0]) / static_cast<double>(size);
-      std::fill_n(out, size, each);
-      out += size;
-      ++e;
+      put_plain(e++);
       continue;
     }
     std::size_t count = 1;

@@ -121,14 +121,15 @@ bool straight_frame(const Vec2& p0, const Vec2& p1, const Vec2& p2, Frame& frame
 /// Whether a straight triangle is its own frame, up to the rounding of barycentric coordinates at
 /// its place in the plane.
 bool is_own(const Frame& frame, const std::array<Vec2, 3>& corner) {
-  double slope = 0.0;
-  for (const Vec2& g : frame.gradient) slope = std::max({slope, std::abs(g.x()), std::abs(g.y())});
-  const double reach = std::max(std::abs(frame.centre.x()), std::abs(frame.centre.y()));
+  const auto size = [](const Vec2& p) { return std::max(std::abs(p.x()), std::abs(p.y())); };
+  const auto& g = frame.gradient;
+  const double slope = std::max(std::max(size(g[0]), size(g[1])), size(g[2]));
+  const double reach = size(frame.centre);
   double largest = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Lambda l = frame.lambda(corner[k]);
-    for (std::size_t i = 0; i < 3; ++i)
-      largest = std::max(largest, std::abs(l[i] - (i == k ? 1.0 : 0.0)));
+    Lambda l = frame.lambda(corner[k]);
+    l[k] -= 1.0;
+    largest = std::max(std::max(largest, std::abs(l[0])), std::max(std::abs(l[1]), std::abs(l[2])));
   }
   return largest <= 0x1p-51 * (2.0 + reach * slope);
 }

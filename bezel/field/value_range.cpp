@@ -68,6 +68,7 @@ ValueRanges::ValueRanges(std::shared_ptr<const Space> space, int threads)
   const std::size_t elements = mesh.element_count();
   if (elements == 0) throw InputError("a mesh without elements has no range of values");
   if (space_->basis() == Basis::reference) return;
+  const bool straight = mesh.degree() == 1;
   widening_.resize(elements);
   exact_.resize(elements);
   field_detail::for_chunks(elements, threads, [&](std::size_t from, std::size_t to) {
@@ -78,9 +79,12 @@ ValueRanges::ValueRanges(std::shared_ptr<const Space> space, int threads)
       double least = 0.0, apart = 0.0;
       for (std::size_t n = 0; n < nodes.size(); ++n) {
         const Lambda l = frame.lambda(mesh.control(nodes[n]));
-        least = std::min({least, l[0], l[1], l[2]});
-        for (std::size_t k = 0; k < 3; ++k)
-          apart = std::max(apart, std::abs(l[k] - (k == n ? 1.0 : 0.0)));
+        least = std::min(std::min(least, l[0]), std::min(l[1], l[2]));
+        if (!straight) continue;
+        Lambda off = l;
+        off[n] -= 1.0;
+        apart = std::max(std::max(apart, std::abs(off[0])),
+                         std::max(std::abs(off[1]), std::abs(off[2])));
       }
       // Barycentrics not below -s: the absolute values of the three add up to at most 1 + 6 s,
       // those of the basis functions to its d-th power, and what exceeds 1 is negative and positive
@@ -88,7 +92,7 @@ ValueRanges::ValueRanges(std::shared_ptr<const Space> space, int threads)
       const double s = 8.0 * u - least;
       const int d = space_->degree(id);
       widening_[e] = least < -far_outside ? -1.0 : 0.5 * (power(1.0 + 6.0 * s, d) - 1.0);
-      exact_[e] = mesh.degree() == 1 && apart < same_corner ? 1 : 0;
+      exact_[e] = straight && apart < same_corner ? 1 : 0;
     }
   });
 }

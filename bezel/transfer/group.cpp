@@ -48,12 +48,18 @@ std::vector<Column> columns_of(std::span<const Field* const> fields) {
 /// other.
 void scale_columns(std::span<const Column> columns, std::size_t begin,
                    std::span<const double> factors, double* to) {
-  const std::size_t size = factors.size();
-  for (const Column& column : columns) {
-    const double* from = column.first + begin * column.stride;
-    for (std::size_t n = 0; n < size; ++n) to[n] = from[n * column.stride] * factors[n];
-    to += size;
-  }
+  bernstein::with_triangle_size(factors.size(), [&](auto fixed) {
+    const std::size_t size = fixed() > 0 ? fixed() : factors.size();
+    for (const Column& column : columns) {
+      const double* from = column.first + begin * column.stride;
+      if (column.stride == 1) {
+        for (std::size_t n = 0; n < size; ++n) to[n] = from[n] * factors[n];
+      } else {
+        for (std::size_t n = 0; n < size; ++n) to[n] = from[n * column.stride] * factors[n];
+      }
+      to += size;
+    }
+  });
 }
 
 /// Each of nc rows of `fixed` (0: of `size`) numbers times the matrix, as columns.
@@ -100,11 +106,17 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
   donor_mass = field_detail::element_integrals(fields, donor_integrals, threads);
   scaled.resize(donor_space->coefficient_count() * nc);
   const std::vector<Column> columns = columns_of(fields);
-  for_blocks(donor.element_count(), threads, [&](std::size_t e) {
-    const std::size_t begin = donor_space->offset(ElementId(e));
-    scale_columns(columns, begin, multinomials(donor_space->degree(ElementId(e))),
-                  scaled.data() + begin * nc);
-  });
+  if (nc == 1 && donor_degree.highest <= 1) {
+    // The factors are 1.
+    const std::span<const double> all = fields.front()->coefficients();
+    std::copy(all.begin(), all.end(), scaled.begin());
+  } else {
+    for_blocks(donor.element_count(), threads, [&](std::size_t e) {
+      const std::size_t begin = donor_space->offset(ElementId(e));
+      scale_columns(columns, begin, multinomials(donor_space->degree(ElementId(e))),
+                    scaled.data() + begin * nc);
+    });
+  }
   out.resize(target_space->coefficient_count() * nc);
   make_powers(donor.element_count(), threads);
 }
@@ -132,16 +144,28 @@ void Group::make_powers(std::size_t elements, int threads) {
   if (donor_mapped || target_mapped) return;
   powers.resize(scaled.size() + batch_padding);
   std::fill(powers.end() - batch_padding, powers.end(), 0.0);
-  for_blocks(elements, threads, [&](std::size_t e) {
-    const int degree = donor_space->degree(ElementId(e));
-    if (degree > max_moment_degree) return;
-    const std::size_t begin = donor_space->offset(ElementId(e)) * nc;
+  const auto of_elements = [&](std::size_t from, std::size_t to, int degree) {
     const auto size = static_cast<std::size_t>(bernstein::triangle_size(degree));
+    const std::size_t begin = donor_space->offset(ElementId(from)) * nc;
     bernstein::with_triangle_size(size, [&](auto fixed) {
-      multiply_rows<fixed()>(size, nc, power_matrix(degree).data(), scaled.data() + begin,
-                             powers.data() + begin);
+      const double* const matrix = power_matrix(degree).data();
+      const double* row = scaled.data() + begin;
+      double* to_row = powers.data() + begin;
+      for (std::size_t e = from; e < to; ++e, row += size * nc, to_row += size * nc)
+        multiply_rows<fixed()>(size, nc, matrix, row, to_row);
     });
-  });
+  };
+  const int uniform = donor_degree.uniform;
+  parallel_for((elements + block - 1) / block,
+               [&](std::size_t b) {
+                 const std::size_t begin = b * block, end = std::min(elements, begin + block);
+                 const std::size_t step = uniform >= 0 ? end - begin : 1;
+                 for (std::size_t e = begin; e < end; e += step) {
+                   const int degree = donor_space->degree(ElementId(e));
+                   if (degree <= max_moment_degree) of_elements(e, e + step, degree);
+                 }
+               },
+               threads);
 }
 
 Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
