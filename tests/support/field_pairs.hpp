@@ -125,8 +125,8 @@ inline MeshPair field_pair(std::uint64_t seed) {
     return lo + static_cast<int>(random.below(static_cast<std::uint64_t>(hi - lo + 1)));
   };
   // Mostly of one degree on both sides: that is the way of most elements.
-  const int g = std::array{1, 1, 1, 2, 2, 2, 3, 3, 4, 5}[random.below(10)];
-  const int h = random.below(5) == 0 ? size(1, 5) : g;
+  const int g = std::array{1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 5}[random.below(11)];
+  const int h = random.below(8) == 0 ? size(1, 5) : g;
   const Vec2 to{{random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)}};
   const double angle = random.uniform(0, 6.28), scale = random.uniform(0.4, 0.63);
   MeshPair out;

@@ -315,7 +315,11 @@ struct SlowSystem {
       std::vector<Real> column(size, 0);
       column[k] = 1;
       solve(column);
-      for (std::size_t i = 0; i < size; ++i) sum[i] += std::abs(column[i]) * integral[k];
+      for (std::size_t i = 0; i < size; ++i) {
+        sum[i] += std::abs(column[i]) * integral[k];
+        local_magnification =
+            std::max(local_magnification, static_cast<double>(area * std::abs(column[i])));
+      }
     }
     for (const Real s : sum) rows = std::max(rows, s);
     magnification = static_cast<double>(rows);
@@ -336,6 +340,9 @@ struct SlowSystem {
   /// Integrals off by the fraction e of the basis functions' own may change coefficients by e times
   /// this: the largest row of |M^-1| times the integrals.
   double magnification = 0;
+  /// A value off by one on the fraction e of the area, anywhere, may change coefficients by e times
+  /// this: the largest entry of M^-1 times the area.
+  double local_magnification = 0;
 };
 
 /// What one donor element gives to one target element.
