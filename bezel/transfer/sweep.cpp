@@ -132,11 +132,22 @@ std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayM
         const auto t0 = clock::now();
         worker->find_overlays(elements.subspan(begin, end - begin), result.counts);
         const auto t1 = clock::now();
+        const std::span<const std::int32_t> chunk_elements = elements.subspan(begin, end - begin);
+        std::size_t together_begin = begin, together_end = begin;
         for (std::size_t i = begin; i < end; ++i) {
           const std::int32_t t = elements[i];
+          const ElementPieces own = worker->overlays[i - begin];
           made_here.assign(components, 0.0);
-          const ElementOutcome outcome = worker->element.process(
-              t, worker->overlays[i - begin], result.given, made_here, visit ? &blocks : nullptr);
+          if (i >= together_end && !visit) {
+            together_begin = i;
+            together_end =
+                i + worker->element.begin_together(chunk_elements, worker->overlays, i - begin);
+          }
+          const bool ready = i < together_end && worker->element.together(i - together_begin);
+          const ElementOutcome outcome =
+              ready ? worker->element.take(i - together_begin, t, own, result.given)
+                    : worker->element.process(t, own, result.given, made_here,
+                                              visit ? &blocks : nullptr);
           if (visit) visit(i, t, blocks);
           for (std::size_t c = 0; c < components; ++c) result.made[c] += made_here[c];
           if (options.conserve == Conserve::total &&
