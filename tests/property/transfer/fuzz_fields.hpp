@@ -260,6 +260,8 @@ class FieldJudge {
     if (!constant && (mapped(from) || mapped(to))) return;
     std::vector<double> uncovered(target().element_count(), 0.0);
     for (const auto& [e, area] : result.report.uncovered_elements) uncovered[e.index()] = area;
+    // A mass that areas are off by is off by as much, and reported.
+    const double residual = 2.0 * result.report.max_partition_residual;
     std::vector<double> value(static_cast<std::size_t>(to.components()));
     for (std::size_t t = 0; t < target().element_count(); ++t) {
       double growth = 1.0;
@@ -272,8 +274,9 @@ class FieldJudge {
       double largest = scale(from, t);
       if (growth > 1.0)
         for (const double c : from.coefficients()) largest = std::max(largest, std::abs(c));
-      const double bound = constant ? largest * (to.space().highest_degree() < 6 ? 1e-13 : 1e-12)
-                                    : largest * growth * rounded(from, to, t);
+      const double bound =
+          constant ? largest * ((to.space().highest_degree() < 6 ? 1e-13 : 1e-12) + residual)
+                   : largest * growth * rounded(from, to, t);
       double worst = 0.0;
       for (int k = 0; k <= 3; ++k) {
         for (int j = 0; j + k <= 3; ++j) {

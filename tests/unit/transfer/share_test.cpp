@@ -177,8 +177,8 @@ TEST(Share, SameBitsWhereFieldsAreContinuedFarAway) {
 // The donors behind a rim of slivers serve beyond it.
 TEST(Share, SameBitsWhereBetterDonorsThanTheNearestServe) {
   const auto rim = [](double x) {
-    return std::abs(x) < 0.89 ? x / 0.9 * (1.0 - 1e-3)
-                              : std::copysign(1.0 - (1.0 - std::abs(x)) * 1e-2, x);
+    return std::abs(x) < 0.89 ? x / 0.9 * (1.0 - 1e-6)
+                              : std::copysign(1.0 - (1.0 - std::abs(x)) * 1e-5, x);
   };
   const MeshPtr donor = test::grid_mesh(20, 1, 1.0, [&](const Vec2& p) {
     return Vec2{{rim(p[0]), rim(p[1])}};
