@@ -16,7 +16,7 @@ class Bvh {
   Bvh() = default;
   /// @throws InputError for more than 2^31 - 1 boxes
   /// @cost   boxes along a Morton curve, halved where it leaves a cell [lauterbach2009]; those in
-  ///         one place of it by binned splits [wald2007]; leaves of up to four boxes; measured 12 ms
+  ///         one place of it by binned splits [wald2007]; leaves of up to four; measured 12 ms
   ///         for 1e5 boxes of a mesh, and 350 ns for a query that finds two, far from the last
   /// @source [lauterbach2009], [wald2007]
   explicit Bvh(std::span<const Box2> boxes);
