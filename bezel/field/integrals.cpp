@@ -185,7 +185,7 @@ std::vector<double> basis_integrals(const Space& space, int threads) {
         const std::array<Vec2, 3> c = corners(mesh, id);
         if (!physical || is_own_frame(space.frame(id), c)) {
           const auto n = at(bernstein::triangle_size(p));
-          const double each = 0.5 * cross(c[1] - c[0], c[2] - c[0]) / static_cast<double>(n);
+          const double each = 0.5 * triangle_cross(c[0], c[1], c[2]) / static_cast<double>(n);
           std::fill_n(out.data() + space.offset(id), n, each);
           continue;
         }
@@ -195,9 +195,11 @@ std::vector<double> basis_integrals(const Space& space, int threads) {
       x.resize(points);
       y.resize(points);
       w.resize(points);
-      rule.map(ElementMap(mesh, id).control(), x, y, w);
+      const ElementMap element(mesh, id);
+      const RoundControl round(element.control());
+      rule.map(round.points(), x, y, w);
       for (std::size_t q = 0; q < points; ++q) w[q] *= rule.weight[q];
-      if (physical) to_frame(space.frame(id), x, y);
+      if (physical) to_frame(moved(round.map(), space.frame(id)), x, y);
       sum_basis(p, physical ? std::span<const double>(x) : rule.u,
                 physical ? std::span<const double>(y) : rule.v, w, bernstein::multinomials(p),
                 out.data() + space.offset(id));

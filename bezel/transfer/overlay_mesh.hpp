@@ -38,6 +38,9 @@ struct OverlayMesh {
   std::vector<double> element_area;      ///< exact up to rounding
   std::vector<double> element_diameter;  ///< of the boxes
   Box2 box;
+  /// Of a mesh that was moved to another plane (flat_sweep.hpp): by how much the rounding of the
+  /// coordinates that it came with moves points here. Else 0.
+  double rounding = 0;
   std::vector<std::int32_t> numbers;  ///< of a part of a mesh: the elements' numbers in the whole
 
   std::int32_t number_of(std::int32_t e) const {

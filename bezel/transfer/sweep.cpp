@@ -11,6 +11,7 @@
 #include <string>
 
 #include "bezel/base/parallel.hpp"
+#include "bezel/transfer/flat_sweep.hpp"
 #include "bezel/transfer/overlay.hpp"
 
 namespace bezel::detail {
@@ -30,10 +31,18 @@ double seconds_since(clock::time_point start) {
 
 struct Worker {
   Worker(const OverlayMesh& donor, const OverlayMesh& target, const FrontSearch& search,
-         std::span<Group> groups, Uncovered policy)
-      : overlay(donor, target, search), element(donor, target, search, groups, policy) {}
+         std::span<Group> groups, const TransferOptions& options,
+         std::span<const std::uint8_t> rim, bool with_blocks)
+      : overlay(donor, target, search),
+        element(donor, target, search, groups, options.uncovered),
+        flat(donor, target, search, groups, options, rim, with_blocks) {
+    element.keep_masses_of(rim);
+  }
   ElementOverlay overlay;
   ElementTransfer element;
+  FlatSweep flat;
+  std::vector<std::uint8_t> done;  // by place in a chunk: worked on by `flat`
+  std::vector<std::int32_t> others;
   OverlayList overlays;  // of a chunk's elements
 
   void find_overlays(std::span<const std::int32_t> elements, OverlayCounts& counts) {
@@ -112,38 +121,51 @@ std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayM
   const std::size_t components = component_count(groups);
   const std::size_t chunks = (elements.size() + chunk_size - 1) / chunk_size;
   std::vector<ChunkResult> results(chunks);
-  WorkerPool pool(
-      [&] { return std::make_unique<Worker>(donor, target, search, groups, options.uncovered); });
   std::vector<std::uint8_t> rim(part_rim.begin(), part_rim.end());
   if (donor.numbers.empty()) rim = rim_donors(donor, target, search);
+  const bool with_blocks = static_cast<bool>(visit);
+  WorkerPool pool([&] {
+    return std::make_unique<Worker>(donor, target, search, groups, options, rim, with_blocks);
+  });
   std::mutex progress_mutex;
   std::size_t chunks_done = 0;
   parallel_for(
       chunks,
       [&](std::size_t chunk) {
         auto worker = pool.take();
-        worker->element.keep_masses_of(rim);
         ChunkResult& result = results[chunk];
         result.made.assign(components, 0.0);
         std::vector<double> made_here;
         ElementBlocks blocks;
         const std::size_t begin = chunk * chunk_size,
                           end = std::min(elements.size(), (chunk + 1) * chunk_size);
+        const std::span<const std::int32_t> own = elements.subspan(begin, end - begin);
+        worker->flat.work_on(own, worker->done, result);
+        std::vector<std::int32_t>& others = worker->others;
+        others.clear();
+        for (std::size_t i = 0; i < own.size(); ++i)
+          if (worker->done[i] == 0) others.push_back(own[i]);
         const auto t0 = clock::now();
-        worker->find_overlays(elements.subspan(begin, end - begin), result.counts);
+        worker->find_overlays(others, result.counts);
         const auto t1 = clock::now();
+        std::size_t overlaid = 0;
+        double solve = 0.0;
         for (std::size_t i = begin; i < end; ++i) {
           const std::int32_t t = elements[i];
+          if (worker->done[i - begin] != 0) {
+            if (visit) visit(i, t, worker->flat.block_of(i - begin));
+            continue;
+          }
           made_here.assign(components, 0.0);
           const ElementOutcome outcome = worker->element.process(
-              t, worker->overlays[i - begin], result.given, made_here, visit ? &blocks : nullptr);
+              t, worker->overlays[overlaid++], result.given, made_here, visit ? &blocks : nullptr);
           if (visit) visit(i, t, blocks);
           for (std::size_t c = 0; c < components; ++c) result.made[c] += made_here[c];
           if (options.conserve == Conserve::total &&
               outcome.uncovered_area >
                   outside_rounding * target.element_area[static_cast<std::size_t>(t)])
             result.element_made.add(t, made_here);
-          result.solve += outcome.solve_seconds;
+          solve += outcome.solve_seconds;
           result.counts.pairs += outcome.pairs;
           result.max_partition_residual =
               std::max(result.max_partition_residual, outcome.partition_residual);
@@ -160,11 +182,12 @@ std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayM
             if (result.inconsistent < 0) result.inconsistent = t;
           }
         }
-        result.overlay = std::chrono::duration<double>(t1 - t0).count();
+        result.overlay += std::chrono::duration<double>(t1 - t0).count();
         // The solves are timed in a sample of the elements: more than all the time in a bad one.
         const double elements_took = seconds_since(t1);
-        result.solve = std::min(result.solve, elements_took);
-        result.integrate = elements_took - result.solve;
+        solve = std::min(solve, elements_took);
+        result.solve += solve;
+        result.integrate += elements_took - solve;
         pool.give(std::move(worker));
         if (progress) {
           const std::lock_guard lock(progress_mutex);

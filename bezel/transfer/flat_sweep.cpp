@@ -1,0 +1,174 @@
+#include "bezel/transfer/flat_sweep.hpp"
+
+#include <algorithm>
+
+#include "bezel/transfer/extension.hpp"
+
+namespace bezel::detail {
+namespace {
+
+/// Diameter over width from which an element is thin: so many roundings are lost in it.
+constexpr double flat = 256.0;
+/// ... and up to which it is round in another plane, in which it may be this many of its diameters
+/// from the middle.
+constexpr double round = 16.0;
+constexpr double near = 256.0;
+
+bool is_flat(const OverlayMesh& mesh, std::int32_t e) {
+  return mesh.element_diameter[static_cast<std::size_t>(e)] > flat * mesh.element_width(e);
+}
+
+Box2 box_in(const AreaMap& map, std::span<const Vec2> control) {
+  Box2 box;
+  for (const Vec2& p : control) box.include(map(p));
+  return box;
+}
+
+Box2 grown(Box2 box, double by) {
+  box.lo -= Vec2{{by, by}};
+  box.hi += Vec2{{by, by}};
+  return box;
+}
+
+template <class T>
+void append(const std::vector<T>& from, std::vector<T>& to) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+void merge(const ChunkResult& from, ChunkResult& to) {
+  for (const std::int32_t entry : from.given.massed)
+    to.given.massed.push_back(entry + static_cast<std::int32_t>(to.given.donor.size()));
+  append(from.given.donor, to.given.donor);
+  append(from.given.target, to.given.target);
+  append(from.given.area, to.given.area);
+  append(from.given.mass, to.given.mass);
+  to.counts.pairs += from.counts.pairs;
+  to.counts.crossings += from.counts.crossings;
+  to.counts.tangencies += from.counts.tangencies;
+  to.counts.overlaps += from.counts.overlaps;
+  to.counts.unresolved += from.counts.unresolved;
+  to.counts.max_joint_gap = std::max(to.counts.max_joint_gap, from.counts.max_joint_gap);
+  for (std::size_t c = 0; c < to.made.size(); ++c) to.made[c] += from.made[c];
+  append(from.element_made.element, to.element_made.element);
+  append(from.element_made.mass, to.element_made.mass);
+  append(from.uncovered, to.uncovered);
+  to.uncovered_area += from.uncovered_area;
+  to.max_partition_residual = std::max(to.max_partition_residual, from.max_partition_residual);
+  to.max_joint_gap = std::max(to.max_joint_gap, from.max_joint_gap);
+  to.max_mass_defect = std::max(to.max_mass_defect, from.max_mass_defect);
+  to.extension.add(from.extension);
+  to.overlay += from.overlay;
+  to.integrate += from.integrate;
+  to.solve += from.solve;
+  if (to.inconsistent < 0) to.inconsistent = from.inconsistent;
+  to.inconsistent_count += from.inconsistent_count;
+}
+
+void make_unique(std::vector<std::int32_t>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
+}  // namespace
+
+FlatSweep::FlatSweep(const OverlayMesh& donor, const OverlayMesh& target, const FrontSearch& search,
+                     std::span<Group> groups, const TransferOptions& options,
+                     std::span<const std::uint8_t> rim, bool with_blocks)
+    : donor_(donor),
+      target_(target),
+      search_(search),
+      groups_(groups),
+      options_(options),
+      rim_(rim),
+      with_blocks_(with_blocks) {}
+
+// The first element chooses the plane for all that are round there and not far off.
+std::vector<FlatSweep::Cluster> FlatSweep::clusters(std::span<const std::int32_t> elements) const {
+  std::vector<Cluster> all;
+  if (target_.rounding > 0.0) return all;  // round as it can be
+  std::vector<std::size_t> left;
+  for (std::size_t i = 0; i < elements.size(); ++i)
+    if (is_flat(target_, elements[i])) left.push_back(i);
+  while (!left.empty()) {
+    const AreaMap map = round_map(target_.element(elements[left.front()]));
+    if (map.identity) {
+      left.erase(left.begin());
+      continue;
+    }
+    Cluster& cluster = all.emplace_back();
+    cluster.map = map;
+    std::erase_if(left, [&](std::size_t i) {
+      const std::int32_t t = elements[i];
+      const Box2 box = box_in(map, target_.element(t));
+      const double size = box.diameter();
+      const double width = 2.0 * target_.element_area[static_cast<std::size_t>(t)] / size;
+      // The first one is taken in any case.
+      if (i != left.front() && (size > round * width || norm(box.centre()) > near * size))
+        return false;
+      cluster.share.own.push_back(t);
+      cluster.place.push_back(i);
+      return true;
+    });
+  }
+  return all;
+}
+
+void FlatSweep::add_neighbourhood(Cluster& cluster) {
+  Share& share = cluster.share;
+  share.chunk_count = 1;
+  std::vector<std::int32_t> reached;
+  for (const std::int32_t t : share.own) {
+    share.targets.push_back(t);
+    for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
+      const std::int32_t beyond = target_.across(t, side.edge.value);
+      if (beyond != exterior) share.targets.push_back(beyond);
+    }
+    // Boxes of thin turned elements overlap many that they do not meet: boxes in the other plane
+    // tell.
+    donors_in_reach(donor_, search_, target_.element_box[static_cast<std::size_t>(t)], reached);
+    const Box2 own = box_in(cluster.map, target_.element(t));
+    const Box2 around = grown(own, own.diameter());
+    const std::size_t before = share.donors.size();
+    std::copy_if(reached.begin(), reached.end(), std::back_inserter(share.donors),
+                 [&](std::int32_t d) {
+                   return box_in(cluster.map, donor_.element(d)).overlaps(around);
+                 });
+    if (share.donors.size() == before) append(reached, share.donors);
+  }
+  make_unique(share.targets);
+  make_unique(share.donors);
+}
+
+void FlatSweep::work_on(std::span<const std::int32_t> elements, std::vector<std::uint8_t>& done,
+                        ChunkResult& result) {
+  done.assign(elements.size(), 0);
+  std::vector<Cluster> all = clusters(elements);
+  if (all.empty()) return;
+  if (!writer_) {
+    writer_ = std::make_unique<ShareWriter>(donor_, target_, search_, groups_, options_,
+                                            with_blocks_, rim_);
+  }
+  if (with_blocks_) blocks_.resize(elements.size());
+  for (Cluster& cluster : all) {
+    add_neighbourhood(cluster);
+    for (const std::size_t i : cluster.place) done[i] = 1;
+    MessageWriter to, from;
+    writer_->write(cluster.share, to, cluster.map);
+    const std::vector<std::byte> work = to.take();
+    MessageReader reader(work);
+    detail::work_on(reader, 1, from);
+    const std::vector<std::byte> answer = from.take();
+    MessageReader results(answer);
+    VisitBlocks visit;
+    if (with_blocks_) {
+      visit = [&](std::size_t index, std::int32_t, const ElementBlocks& blocks) {
+        blocks_[cluster.place[index]] = blocks;
+      };
+    }
+    ChunkResult own;
+    read_results(cluster.share, results, groups_, {&own, 1}, visit);
+    merge(own, result);
+  }
+}
+
+}  // namespace bezel::detail
