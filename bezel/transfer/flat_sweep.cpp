@@ -113,32 +113,77 @@ std::vector<FlatSweep::Cluster> FlatSweep::clusters(std::span<const std::int32_t
   return all;
 }
 
+// The donors that may meet an element, or continue a field to it: those whose boxes meet its own in
+// both planes. In the files' plane alone the boxes of thin turned elements meet many others.
 void FlatSweep::add_neighbourhood(Cluster& cluster) {
   Share& share = cluster.share;
   share.chunk_count = 1;
-  std::vector<std::int32_t> reached;
+  Box2 all;
+  std::vector<Box2> own;
+  Box2 all_there;
   for (const std::int32_t t : share.own) {
     share.targets.push_back(t);
     for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
       const std::int32_t beyond = target_.across(t, side.edge.value);
       if (beyond != exterior) share.targets.push_back(beyond);
     }
-    // Boxes of thin turned elements overlap many that they do not meet: boxes in the other plane
-    // tell.
-    donors_in_reach(donor_, search_, target_.element_box[static_cast<std::size_t>(t)], reached);
-    const Box2 own = box_in(cluster.map, target_.element(t));
-    const Box2 around = grown(own, own.diameter());
+    all.include(widened(target_.element_box[static_cast<std::size_t>(t)], 0.0));
+    const Box2 there = box_in(cluster.map, target_.element(t));
+    own.push_back(grown(there, there.diameter()));
+    all_there.include(own.back());
+  }
+  search_.query(all, {}, memory_, found_);
+  std::vector<std::int32_t> near;
+  std::vector<Box2> boxes;
+  for (const std::int32_t d : found_) {
+    const Box2 there = box_in(cluster.map, donor_.element(d));
+    if (!there.overlaps(all_there)) continue;
+    near.push_back(d);
+    boxes.push_back(there);
+  }
+  const Bvh tree(boxes);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const Box2& box = target_.element_box[static_cast<std::size_t>(share.own[i])];
+    const Box2 wide = widened(box, 0.0);
     const std::size_t before = share.donors.size();
-    std::copy_if(reached.begin(), reached.end(), std::back_inserter(share.donors),
-                 [&](std::int32_t d) {
-                   return box_in(cluster.map, donor_.element(d)).overlaps(around);
-                 });
-    if (share.donors.size() == before) append(reached, share.donors);
+    found_.clear();
+    tree.query(own[i], found_);
+    for (const std::int32_t k : found_) {
+      const std::int32_t d = near[static_cast<std::size_t>(k)];
+      if (donor_.element_box[static_cast<std::size_t>(d)].overlaps(wide)) share.donors.push_back(d);
+    }
+    if (share.donors.size() > before) continue;
+    donors_in_reach(donor_, search_, box, found_);
+    append(found_, share.donors);
   }
   make_unique(share.targets);
   make_unique(share.donors);
 }
 
+bool FlatSweep::work_on(Cluster& cluster, ChunkResult& result) {
+  add_neighbourhood(cluster);
+  MessageWriter to, from;
+  writer_->write(cluster.share, to, cluster.map);
+  const std::vector<std::byte> work = to.take();
+  MessageReader reader(work);
+  detail::work_on(reader, 1, from);
+  const std::vector<std::byte> answer = from.take();
+  MessageReader results(answer);
+  VisitBlocks visit;
+  if (with_blocks_) {
+    visit = [&](std::size_t index, std::int32_t, const ElementBlocks& blocks) {
+      blocks_[cluster.place[index]] = blocks;
+    };
+  }
+  ChunkResult own;
+  read_results(cluster.share, results, groups_, {&own, 1}, visit);
+  if (own.inconsistent >= 0) return false;
+  merge(own, result);
+  return true;
+}
+
+// Where thin donors cross a thin target element, no plane makes both round, and regions may fail to
+// close in one where one of them is. Such elements are left to the plane of the files, alone.
 void FlatSweep::work_on(std::span<const std::int32_t> elements, std::vector<std::uint8_t>& done,
                         ChunkResult& result) {
   done.assign(elements.size(), 0);
@@ -150,24 +195,15 @@ void FlatSweep::work_on(std::span<const std::int32_t> elements, std::vector<std:
   }
   if (with_blocks_) blocks_.resize(elements.size());
   for (Cluster& cluster : all) {
-    add_neighbourhood(cluster);
-    for (const std::size_t i : cluster.place) done[i] = 1;
-    MessageWriter to, from;
-    writer_->write(cluster.share, to, cluster.map);
-    const std::vector<std::byte> work = to.take();
-    MessageReader reader(work);
-    detail::work_on(reader, 1, from);
-    const std::vector<std::byte> answer = from.take();
-    MessageReader results(answer);
-    VisitBlocks visit;
-    if (with_blocks_) {
-      visit = [&](std::size_t index, std::int32_t, const ElementBlocks& blocks) {
-        blocks_[cluster.place[index]] = blocks;
-      };
+    if (work_on(cluster, result)) {
+      for (const std::size_t i : cluster.place) done[i] = 1;
+      continue;
     }
-    ChunkResult own;
-    read_results(cluster.share, results, groups_, {&own, 1}, visit);
-    merge(own, result);
+    for (const std::size_t i : cluster.place) {
+      Cluster alone{cluster.map, {}, {i}};
+      alone.share.own.push_back(elements[i]);
+      done[i] = work_on(alone, result) ? 1 : 0;
+    }
   }
 }
 

@@ -27,7 +27,7 @@ class FlatSweep {
 
   /// Works on the thin elements among these; their coefficients go to the groups or their blocks to
   /// block_of().
-  /// @param done    out: by place in the list, nonzero for those worked on
+  /// @param done    out: by place in the list, nonzero for those worked on; the others are left
   /// @param result  what they leave is added
   void work_on(std::span<const std::int32_t> elements, std::vector<std::uint8_t>& done,
                ChunkResult& result);
@@ -43,6 +43,8 @@ class FlatSweep {
   };
   std::vector<Cluster> clusters(std::span<const std::int32_t> elements) const;
   void add_neighbourhood(Cluster& cluster);
+  /// False, and nothing is added, where regions do not close.
+  bool work_on(Cluster& cluster, ChunkResult& result);
 
   const OverlayMesh& donor_;
   const OverlayMesh& target_;
@@ -53,6 +55,8 @@ class FlatSweep {
   bool with_blocks_;
   std::unique_ptr<ShareWriter> writer_;  // once there is a thin element
   std::vector<ElementBlocks> blocks_;
+  FrontSearch::Memory memory_;
+  std::vector<std::int32_t> found_;
 };
 
 }  // namespace bezel::detail

@@ -2,6 +2,7 @@
 // Internal: a mesh laid out for the overlay: geometry of edges and elements in flat arrays, boxes,
 // search.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -85,6 +86,13 @@ struct OverlayMesh {
 
   std::vector<CurveCache> edge_cache_;  // of curved edges
 };
+
+/// Gaps in what covers an element, up to this fraction of it, are rounding and are extended whatever
+/// the policy.
+inline double silent_gap(const OverlayMesh& mesh, std::int32_t e) {
+  constexpr double usual = 1e-10, roundings = 32.0;  // of boundaries of both meshes
+  return std::max(usual, roundings * mesh.rounding / mesh.element_width(e));
+}
 
 /// Finds the elements whose boxes overlap a box by walking over the adjacency graph from a known
 /// element (an advancing front), and asks a tree only where the front meets the mesh's boundary or

@@ -19,8 +19,6 @@ namespace {
 
 using clock = std::chrono::steady_clock;
 
-/// Uncovered parts below this fraction of an element are rounding.
-constexpr double silent_gap = 1e-10;
 /// Donor area outside the target, and target area without donor for Conserve::total, below this
 /// fraction of the element is rounding of the sums.
 constexpr double outside_rounding = 3e-14;
@@ -172,7 +170,7 @@ std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayM
           result.max_joint_gap = std::max(result.max_joint_gap, outcome.max_joint_gap);
           result.max_mass_defect = std::max(result.max_mass_defect, outcome.max_mass_defect);
           if (outcome.uncovered_area >
-              silent_gap * target.element_area[static_cast<std::size_t>(t)]) {
+              silent_gap(target, t) * target.element_area[static_cast<std::size_t>(t)]) {
             result.uncovered.push_back({ElementId(t), outcome.uncovered_area});
           }
           result.uncovered_area += outcome.uncovered_area;
