@@ -40,6 +40,14 @@ class ElementMap {
     size_ = static_cast<std::size_t>(mesh.nodes_per_element());
     mesh.gather(e, {control_.data(), size_});
   }
+  /// Moves the element to where it is round: integrals over it are the same there, and have all
+  /// their digits.
+  AreaMap make_round() {
+    const AreaMap map = round_map(control());
+    if (!map.identity)
+      for (Vec2& p : std::span(control_).first(size_)) p = map(p);
+    return map;
+  }
   int degree() const { return degree_; }
   std::span<const Vec2> control() const { return {control_.data(), size_}; }
   Vec2 operator()(const Lambda& lambda) const {

@@ -31,8 +31,8 @@ ValidityResult check_validity(int g, std::span<const Vec2> control) {
   geometry_kernel::check_triangle(g, control, bernstein::max_triangle_degree);
   if (g == 1) {
     const Vec2 a = control[1] - control[0], b = control[2] - control[0];
-    const double det = is_thin(a, b) ? triangle_cross(control[0], control[1], control[2])
-                                     : cross_accurate(a, b);
+    const double det =
+        is_thin(a, b) ? triangle_cross(control[0], control[1], control[2]) : cross_accurate(a, b);
     return {det > 0 ? Validity::valid : Validity::inverted, {1.0 / 3, 1.0 / 3, 1.0 / 3}, det};
   }
   const RoundControl round(control);

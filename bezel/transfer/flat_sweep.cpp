@@ -8,14 +8,16 @@ namespace bezel::detail {
 namespace {
 
 /// Diameter over width from which an element is thin: so many roundings are lost in it.
-constexpr double flat = 256.0;
+constexpr double flat = 64.0;
 /// ... and up to which it is round in another plane, in which it may be this many of its diameters
 /// from the middle.
 constexpr double round = 16.0;
 constexpr double near = 256.0;
 
 bool is_flat(const OverlayMesh& mesh, std::int32_t e) {
-  return mesh.element_diameter[static_cast<std::size_t>(e)] > flat * mesh.element_width(e);
+  const auto i = static_cast<std::size_t>(e);
+  const double diameter = mesh.element_diameter[i];
+  return diameter * diameter > flat * 2.0 * mesh.element_area[i];
 }
 
 Box2 box_in(const AreaMap& map, std::span<const Vec2> control) {

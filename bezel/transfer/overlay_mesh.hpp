@@ -87,8 +87,8 @@ struct OverlayMesh {
   std::vector<CurveCache> edge_cache_;  // of curved edges
 };
 
-/// Gaps in what covers an element, up to this fraction of it, are rounding and are extended whatever
-/// the policy.
+/// Gaps in what covers an element, up to this fraction of it, are rounding and are extended
+/// whatever the policy.
 inline double silent_gap(const OverlayMesh& mesh, std::int32_t e) {
   constexpr double usual = 1e-10, roundings = 32.0;  // of boundaries of both meshes
   return std::max(usual, roundings * mesh.rounding / mesh.element_width(e));

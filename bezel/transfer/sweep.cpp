@@ -29,8 +29,8 @@ double seconds_since(clock::time_point start) {
 
 struct Worker {
   Worker(const OverlayMesh& donor, const OverlayMesh& target, const FrontSearch& search,
-         std::span<Group> groups, const TransferOptions& options,
-         std::span<const std::uint8_t> rim, bool with_blocks)
+         std::span<Group> groups, const TransferOptions& options, std::span<const std::uint8_t> rim,
+         bool with_blocks)
       : overlay(donor, target, search),
         element(donor, target, search, groups, options.uncovered),
         flat(donor, target, search, groups, options, rim, with_blocks) {
