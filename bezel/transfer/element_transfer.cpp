@@ -582,8 +582,9 @@ void ElementTransfer::finish_groups(std::int32_t t, double integrated, bool batc
     if (finish_straight(i, t, mass, integrated, result, outcome)) continue;
     if (have_moments_[i] != 0) moments_to_powers(i, t);
     std::span<const double> whole;
-    // Of pieces around open joints, sums over regions are no sharper than the joints.
-    if (outcome.uncovered_area == 0.0 && batch && !loose_) whole = whole_[i];
+    // Around open joints in a plane that makes donors long, sums are no sharper than those are.
+    const bool blurred = loose_ && target_.rounding > 0.0;
+    if (outcome.uncovered_area == 0.0 && batch && !blurred) whole = whole_[i];
     finish(groups_[i], t, sums_[i], whole, mass, base_[i], integrated, result, outcome);
   }
   if (timed) {

@@ -162,7 +162,7 @@ TEST(FlatSweep, LinearFunctionsComeBack) {
     std::vector<double> c;
     for (const NodeId n : mesh->connectivity()) {
       const Vec2 p = map(mesh->control(n)) * 1e3;
-      c.push_back(1.0 + 2.0 * p.x() * 1e-3 - 3.0 * p.y());
+      c.push_back(1.0 + 2.0 * p.x() - 3.0 * p.y());
     }
     return Field("linear", Space::discontinuous(mesh, 1), c);
   };
