@@ -12,7 +12,7 @@ constexpr double flat = 64.0;
 /// ... and up to which it is round in another plane, in which it may be this many of its diameters
 /// from the middle.
 constexpr double round = 16.0;
-constexpr double near = 256.0;
+constexpr double nearby = 256.0;
 
 bool is_flat(const OverlayMesh& mesh, std::int32_t e) {
   const auto i = static_cast<std::size_t>(e);
@@ -105,7 +105,7 @@ std::vector<FlatSweep::Cluster> FlatSweep::clusters(std::span<const std::int32_t
       const double size = box.diameter();
       const double width = 2.0 * target_.element_area[static_cast<std::size_t>(t)] / size;
       // The first one is taken in any case.
-      if (i != left.front() && (size > round * width || norm(box.centre()) > near * size))
+      if (i != left.front() && (size > round * width || norm(box.centre()) > nearby * size))
         return false;
       cluster.share.own.push_back(t);
       cluster.place.push_back(i);
