@@ -10,14 +10,8 @@ namespace bezel::detail {
 /// Extra degree of exactness where an integrand is not a polynomial (a map inverted along a curve).
 inline constexpr int inexact_extra = 4;
 
-/// Joints open by more than this fraction of the smaller element mean that the overlay is wrong
-/// there.
-inline constexpr double largest_joint_gap = 1e-10;
-
-/// Whether a region's joints are closed to far less than an element's width, 2 area / size.
-inline bool closes(double gap, double size, double area) {
-  return gap * size <= 2.0 * largest_joint_gap * area;
-}
+/// Donors smaller than this fraction of the target's area get their areas from rays of their own.
+inline constexpr double small_area = 1.0 / 64.0;
 
 /// A point of an element and the derivatives of its map.
 struct MapPoint {

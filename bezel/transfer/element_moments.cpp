@@ -13,9 +13,6 @@
 namespace bezel::detail {
 namespace {
 
-/// Donors smaller than this fraction of the target's area get their areas from rays of their own.
-constexpr double small_area = 1.0 / 64.0;
-
 /// Largest factor by which the terms of a donor's polynomial may exceed its values in a region that
 /// is thin and lies across the target's coordinates.
 constexpr double steepest_terms = 256.0;
@@ -180,11 +177,11 @@ TargetPlace ElementTransfer::target_place(const Group& g, std::int32_t t) {
 }
 
 template <std::size_t points>
-void ElementTransfer::fill_curves(std::span<const BoundaryPiece> pieces) {
-  const std::size_t stride = batch_.stride, count = pieces.size();
+void ElementTransfer::fill_curves(PieceBatch& batch, std::span<const BoundaryPiece> pieces) const {
+  const std::size_t stride = batch.stride, count = pieces.size();
   const Vec2* const curves[2] = {target_.edge_control.data(), donor_.edge_control.data()};
-  double *from = batch_.from.data(), *to = batch_.to.data();
-  double *x = batch_.x.data(), *y = batch_.y.data();
+  double *from = batch.from.data(), *to = batch.to.data();
+  double *x = batch.x.data(), *y = batch.y.data();
   for (std::size_t i = 0; i < stride; ++i) {
     // The padding repeats the last piece.
     const BoundaryPiece& piece = pieces[i < count ? i : count - 1];
@@ -199,11 +196,11 @@ void ElementTransfer::fill_curves(std::span<const BoundaryPiece> pieces) {
   }
 }
 
-void ElementTransfer::fill_batch(std::span<const BoundaryPiece> pieces) {
-  batch_.resize(pieces.size(), target_.degree);
-  if (target_.degree == 1) return fill_curves<2>(pieces);
-  if (target_.degree == 2) return fill_curves<3>(pieces);
-  return fill_curves<4>(pieces);
+void ElementTransfer::fill_batch(PieceBatch& batch, std::span<const BoundaryPiece> pieces) const {
+  batch.resize(pieces.size(), target_.degree);
+  if (target_.degree == 1) return fill_curves<2>(batch, pieces);
+  if (target_.degree == 2) return fill_curves<3>(batch, pieces);
+  return fill_curves<4>(batch, pieces);
 }
 
 std::span<const Segment> ElementTransfer::all_runs(const ElementPieces& own) {
@@ -224,7 +221,6 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
                                     ElementOutcome& outcome) {
   area_.clear();
   bridged_.assign(own.donors.size(), 0);
-  plain_ = false;
   const auto note = [&](std::size_t k) {
     const std::int32_t d = own.donors[k];
     RunShape shape = run_shape(run_of(own, k));
@@ -241,7 +237,7 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
     for (std::size_t k = 0; k < own.donors.size(); ++k) note(k);
     return false;
   }
-  fill_batch(own.pieces);
+  fill_batch(batch_, own.pieces);
   // The areas have the same bits whatever is summed besides.
   const bool summed = first < groups_.size();
   const int degree = summed ? 2 * groups_[first].target_space->uniform_degree() : 0;
@@ -250,17 +246,19 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
       : target_.degree == 1
           ? place_of(affine_frame(target_.corners(t)))
           : TargetPlace{origin_, Vec2{{1, 0}}, Vec2{{0, 1}}, Vec2{{1, 0}}, Vec2{{0, 1}}, 1.0};
-  region_sums(piece_table(target_.degree, degree), degree, origin_, place, own.pieces,
-              own.donors.size(), batch_);
+  const ElementCount all{static_cast<std::uint32_t>(own.pieces.size()),
+                         static_cast<std::uint32_t>(own.donors.size())};
+  region_sums(piece_table(target_.degree, degree), degree, {place, origin_}, own.pieces, {&all, 1},
+              batch_);
+  const double area_unit = batch_.area_in_units ? place.area : 1.0;
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
   const double own_size = target_.element_diameter[static_cast<std::size_t>(t)];
-  bool plain = true;
   for (std::size_t k = 0; k < own.donors.size(); ++k) {
     const std::int32_t d = own.donors[k];
     const double* sums = batch_.region(k);
     const double* open = sums + batch_.open;
     const double gap = norm(open[0] * place.along_first + open[1] * place.along_second);
-    const double area = sums[batch_.area] * batch_.area_unit;
+    const double area = sums[batch_.area] * area_unit;
     // About a place in the target element, areas are known to its rounding.
     bool small = false;
     if (d != exterior) {
@@ -276,7 +274,6 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
         continue;
       }
     }
-    plain = false;
     if (small || loose_ || !is_closed(t, d, gap)) {
       loose_ = loose_ || !is_closed(t, d, gap);
       note(k);
@@ -286,7 +283,6 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
     area_.push_back(area);
     note_region(t, d, area, gap, outcome);
   }
-  plain_ = plain && summed;
   return summed;
 }
 
@@ -297,8 +293,10 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
   const int degree = g.target_space->uniform_degree();
   const TargetPlace place = target_place(g, t);
   if (!summed) {
-    region_sums(piece_table(target_.degree, 2 * degree), 2 * degree, origin_, place, own.pieces,
-                own.donors.size(), batch_);
+    const ElementCount all{static_cast<std::uint32_t>(own.pieces.size()),
+                           static_cast<std::uint32_t>(own.donors.size())};
+    region_sums(piece_table(target_.degree, 2 * degree), 2 * degree, {place, origin_}, own.pieces,
+                {&all, 1}, batch_);
   }
   const double* some = nullptr;
   const std::size_t count = own.donors.size();

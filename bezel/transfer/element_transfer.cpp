@@ -45,7 +45,12 @@ ElementTransfer::ElementTransfer(const OverlayMesh& donor, const OverlayMesh& ta
     batched_[i] = can_batch(groups[i]) ? 1 : 0;
     fitted_[i] = batched_[i] == 0 && PairFit::can(groups[i], donor, target) ? 1 : 0;
   }
-  all_batched_ = std::find(batched_.begin(), batched_.end(), 0) == batched_.end();
+  const bool all_batched = std::find(batched_.begin(), batched_.end(), 0) == batched_.end();
+  some_together_ = all_batched && !groups.empty() && donor.degree == target.degree &&
+                   target.degree <= max_batch_degree;
+  together_sums_.resize(groups.size());
+  together_base_.resize(groups.size());
+  together_whole_.resize(groups.size());
 }
 
 void ElementTransfer::Accumulators::reset(std::size_t functions, std::size_t components,
@@ -420,10 +425,6 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
   have_segments_ = false;
   loose_ = own.loose();
   const bool summed = shape_regions(t, own, first_batched, outcome);
-  if (plain_ && all_batched_ && keeps_no_mass(own.donors)) {
-    process_plain(t, own, first_batched, given, outcome);
-    return outcome;
-  }
   for (std::size_t i = 0; i < groups_.size(); ++i)
     sums_[i].reset(functions_[i], static_cast<std::size_t>(groups_[i].components));
   double total = 0.0;
@@ -530,40 +531,6 @@ void ElementTransfer::note_partition(std::int32_t t, double total, ElementOutcom
   if (outcome.partition_residual > largest_joint_gap &&
       outcome.partition_residual > largest_partition_residual(t))
     outcome.inconsistent = true;
-}
-
-bool ElementTransfer::keeps_no_mass(std::span<const std::int32_t> donors) const {
-  if (keep_masses_of_.empty()) return false;
-  std::uint8_t any = 0;
-  for (const std::int32_t d : donors) any |= keep_masses_of_[static_cast<std::size_t>(d)];
-  return any == 0;
-}
-
-void ElementTransfer::process_plain(std::int32_t t, const ElementPieces& own,
-                                    std::size_t first_batched, GivenList& given,
-                                    ElementOutcome& outcome) {
-  const std::size_t regions = own.donors.size();
-  given.target.insert(given.target.end(), regions, t);
-  given.donor.insert(given.donor.end(), own.donors.begin(), own.donors.end());
-  given.area.insert(given.area.end(), area_.begin(), area_.end());
-  outcome.pairs = static_cast<std::int32_t>(regions);
-  for (const double area : area_) outcome.covered_area += area;
-  masses_.clear();
-  for (std::size_t i = 0; i < groups_.size(); ++i) {
-    const auto nc = static_cast<std::size_t>(groups_[i].components);
-    if (region_mass_.size() < regions * nc) region_mass_.resize(2 * regions * nc);
-    base_[i].resize(nc + batch_padding);
-    sums_[i].reset(functions_[i], nc);
-    begin_moments(i);
-    add_batched(i, t, own, i == first_batched, region_mass_);
-    const std::size_t c0 = masses_.size();
-    masses_.resize(c0 + nc, 0.0);
-    for (std::size_t k = 0; k < regions; ++k)
-      for (std::size_t c = 0; c < nc; ++c) masses_[c0 + c] += region_mass_[k * nc + c];
-  }
-  masses_.resize(masses_.size() + batch_padding);
-  note_partition(t, outcome.covered_area, outcome);
-  finish_groups(t, outcome.covered_area, true, nullptr, outcome);
 }
 
 void ElementTransfer::finish_groups(std::int32_t t, double integrated, bool batch,

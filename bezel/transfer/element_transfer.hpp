@@ -13,6 +13,7 @@
 #include "bezel/field/field.hpp"
 #include "bezel/geometry/triangle.hpp"
 #include "bezel/numeric/quadrature.hpp"
+#include "bezel/transfer/element_batch.hpp"
 #include "bezel/transfer/extension.hpp"
 #include "bezel/transfer/group.hpp"
 #include "bezel/transfer/mass_rule.hpp"
@@ -73,6 +74,14 @@ class ElementTransfer {
   /// there instead of being added up.
   ElementOutcome process(std::int32_t t, const ElementPieces& own, GivenList& given,
                          std::span<double> made, ElementBlocks* blocks = nullptr);
+  /// Works on some of the elements from number `first` of the list on together, where they are
+  /// ordinary: nothing but time depends on how many.
+  /// @return how many of them have been looked at, at most eight; those of which together(k) holds
+  ///         are ready for take(k), the others want process()
+  std::size_t begin_together(std::span<const std::int32_t> elements, const OverlayList& overlays,
+                             std::size_t first);
+  bool together(std::size_t k) const { return together_[k]; }
+  ElementOutcome take(std::size_t k, std::int32_t t, const ElementPieces& own, GivenList& given);
   /// From now on only masses given by these donor elements are kept (nonzero; empty: all).
   void keep_masses_of(std::span<const std::uint8_t> donors) { keep_masses_of_ = donors; }
 
@@ -105,11 +114,12 @@ class ElementTransfer {
   double bridge_joints();
   /// Starts and steps of bridges_ in the plane.
   std::span<const std::array<Vec2, 2>> plane_bridges();
-  /// The ordinary case: all groups by moments, on closed regions that cover the element.
-  void process_plain(std::int32_t t, const ElementPieces& own, std::size_t first_batched,
-                     GivenList& given, ElementOutcome& outcome);
-  bool keeps_no_mass(std::span<const std::int32_t> donors) const;
   void note_partition(std::int32_t t, double total, ElementOutcome& outcome) const;
+  // Ordinary elements together (element_together.cpp).
+  bool may_be_ordinary(std::int32_t t, const ElementPieces& own, std::size_t first_region);
+  void sum_together(std::size_t group, std::span<const std::int32_t> elements,
+                    std::span<const BoundaryPiece> pieces, std::span<const std::int32_t> donors);
+  void fill_batch(PieceBatch& batch, std::span<const BoundaryPiece> pieces) const;
   void finish_groups(std::int32_t t, double integrated, bool batch, ElementBlocks* blocks,
                      ElementOutcome& outcome);
   bool is_closed(std::int32_t t, std::int32_t d, double gap) const;
@@ -141,9 +151,8 @@ class ElementTransfer {
   static TargetPlace target_place(const Group& g, std::int32_t t);
   void begin_moments(std::size_t group);
   void choose_base(std::size_t group, const ElementPieces& own);
-  void fill_batch(std::span<const BoundaryPiece> pieces);
   template <std::size_t points>
-  void fill_curves(std::span<const BoundaryPiece> pieces);
+  void fill_curves(PieceBatch& batch, std::span<const BoundaryPiece> pieces) const;
   /// Notes the regions' areas; returns whether the batch now holds the sums of group `first`.
   bool shape_regions(std::int32_t t, const ElementPieces& own, std::size_t first,
                      ElementOutcome& outcome);
@@ -251,8 +260,7 @@ class ElementTransfer {
   PieceBatch batch_;
   std::vector<BatchRegion> regions_;
   std::vector<double> area_;           // by region
-  bool plain_ = false;                 // all regions are closed, and none lacks a donor
-  std::vector<std::uint8_t> bridged_;  // by region: has bridges; all 0 when plain_
+  std::vector<std::uint8_t> bridged_;  // by region: has bridges
   std::vector<double> region_mass_;    // of one group, [region][component]
   std::vector<Segment> segments_;      // of this element, when have_segments_
   std::vector<std::size_t> run_end_;   // by region
@@ -274,7 +282,19 @@ class ElementTransfer {
   std::vector<std::uint8_t> have_moments_;  // by group: for this element
   std::vector<std::uint8_t> extended_;      // by group: sums_ hold what moment_sums_ lack
   std::vector<std::uint8_t> batched_;       // by group: goes by add_batched
-  bool all_batched_ = false;
+  // Of elements that are worked on together.
+  bool some_together_ = false;  // the meshes and groups allow it
+  ElementBatch ordinary_;
+  std::array<bool, lanes> together_{};
+  bool all_together_ = false;
+  std::vector<ElementSums> together_sums_;           // by group
+  std::vector<std::vector<double>> together_base_;   // by group, [element][component] and padding
+  std::vector<std::vector<double>> together_whole_;  // by group, on curved elements: [element][n],
+                                                     // whole_ of each
+  SolvedElements solved_;                            // of the only group, when solved_together_
+  bool solved_together_ = false;
+  double together_seconds_ = 0;  // that the solutions took
+  std::uint64_t batches_ = 0;    // done so far
   PairFit fit_;
   std::vector<std::uint8_t> fitted_;  // by group: goes by fit_
   std::vector<double> fitted_mass_;

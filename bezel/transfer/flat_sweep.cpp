@@ -144,20 +144,23 @@ void FlatSweep::add_neighbourhood(Cluster& cluster) {
     boxes.push_back(there);
   }
   const Bvh tree(boxes);
+  std::vector<std::uint8_t> wanted(near.size(), 0);
   for (std::size_t i = 0; i < own.size(); ++i) {
     const Box2& box = target_.element_box[static_cast<std::size_t>(share.own[i])];
     const Box2 wide = widened(box, 0.0);
-    const std::size_t before = share.donors.size();
-    found_.clear();
-    tree.query(own[i], found_);
-    for (const std::int32_t k : found_) {
-      const std::int32_t d = near[static_cast<std::size_t>(k)];
-      if (donor_.element_box[static_cast<std::size_t>(d)].overlaps(wide)) share.donors.push_back(d);
-    }
-    if (share.donors.size() > before) continue;
+    bool any = false;
+    tree.query(own[i], [&](std::int32_t k) {
+      const auto at = static_cast<std::size_t>(k);
+      if (!donor_.element_box[static_cast<std::size_t>(near[at])].overlaps(wide)) return;
+      wanted[at] = 1;
+      any = true;
+    });
+    if (any) continue;
     donors_in_reach(donor_, search_, box, found_);
     append(found_, share.donors);
   }
+  for (std::size_t k = 0; k < near.size(); ++k)
+    if (wanted[k] != 0) share.donors.push_back(near[k]);
   make_unique(share.targets);
   make_unique(share.donors);
 }

@@ -42,10 +42,32 @@ HWY_INLINE void part_control(const Lanes* p, const Lanes& r, const Lanes& s, Lan
   }
 }
 
-/// The pieces' control points in the coordinates of `place`.
+/// Coordinates of eight pieces' elements.
+struct CoordinateLanes {
+  Lanes centre_x, centre_y, first_x, first_y, second_x, second_y;
+};
+
+HWY_INLINE CoordinateLanes coordinates_of(const TargetPlaces& places, const std::int64_t* owner) {
+  return {pick(places.centre_x.data(), owner), pick(places.centre_y.data(), owner),
+          pick(places.first_x.data(), owner),  pick(places.first_y.data(), owner),
+          pick(places.second_x.data(), owner), pick(places.second_y.data(), owner)};
+}
+
+/// Those of the plane about the elements' origins.
+HWY_INLINE CoordinateLanes plane_of(const TargetPlaces& places, const std::int64_t* owner) {
+  const Lanes none{};
+  return {pick(places.origin_x.data(), owner),
+          pick(places.origin_y.data(), owner),
+          none + 1.0,
+          none,
+          none,
+          none + 1.0};
+}
+
+/// The pieces' control points in these coordinates.
 template <int G>
-HWY_INLINE void local_control(const PieceBatch& batch, std::size_t block, const TargetPlace& place,
-                              Lanes* a, Lanes* b) {
+HWY_INLINE void local_control(const PieceBatch& batch, std::size_t block,
+                              const CoordinateLanes& place, Lanes* a, Lanes* b) {
   Lanes from, to, u[G + 1], v[G + 1];
   from = load(batch.from.data() + block);
   to = load(batch.to.data() + block);
@@ -54,10 +76,10 @@ HWY_INLINE void local_control(const PieceBatch& batch, std::size_t block, const 
     Lanes x, y;
     x = load(batch.x.data() + static_cast<std::size_t>(i) * batch.stride + block);
     y = load(batch.y.data() + static_cast<std::size_t>(i) * batch.stride + block);
-    x -= place.centre.x();
-    y -= place.centre.y();
-    u[i] = mul_add(place.first.x(), x, place.first.y() * y);
-    v[i] = mul_add(place.second.x(), x, place.second.y() * y);
+    x -= place.centre_x;
+    y -= place.centre_y;
+    u[i] = mul_add(place.first_x, x, place.first_y * y);
+    v[i] = mul_add(place.second_x, x, place.second_y * y);
   }
   part_control<G>(u, from, to, a);
   part_control<G>(v, from, to, b);
@@ -66,17 +88,18 @@ HWY_INLINE void local_control(const PieceBatch& batch, std::size_t block, const 
 /// Numbers per piece and region with moments up to degree D: these, the step, the area of curved
 /// pieces, and padding.
 template <int G, int D>
-constexpr std::size_t width_of =
-    padded_to_lanes(static_cast<std::size_t>(bernstein::triangle_size(D)) + (G == 1 ? 2 : 3));
+constexpr std::size_t width_of = sums_width(static_cast<std::size_t>(bernstein::triangle_size(D)),
+                                            G > 1);
 
 template <int G, int D>
 void piece_moments_of(const PieceTable& table, const std::vector<double>& weights,
-                      const Vec2& origin, const TargetPlace& place, PieceBatch& batch) {
+                      const TargetPlaces& places, PieceBatch& batch) {
   constexpr std::size_t size = static_cast<std::size_t>(bernstein::triangle_size(D));
   constexpr std::size_t width = width_of<G, D>;
   for (std::size_t block = 0; block < batch.stride; block += lanes) {
     Lanes a[G + 1], b[G + 1];
-    local_control<G>(batch, block, place, a, b);
+    const std::int64_t* const owner = batch.owner.data() + block;
+    local_control<G>(batch, block, coordinates_of(places, owner), a, b);
     Lanes sums[width] = {};
     for (int q = 0; q < table.points; ++q) {
       Lanes x, y, k;
@@ -126,8 +149,7 @@ void piece_moments_of(const PieceTable& table, const std::vector<double>& weight
     } else {
       // The area in the plane, whatever the coordinates and the degree: that of the chord, and of
       // what lies between it and the piece.
-      const TargetPlace plane{origin, Vec2{{1, 0}}, Vec2{{0, 1}}, Vec2{{1, 0}}, Vec2{{0, 1}}, 1.0};
-      local_control<G>(batch, block, plane, a, b);
+      local_control<G>(batch, block, plane_of(places, owner), a, b);
       Lanes twice = a[0] * (b[G] - b[0]) - b[0] * (a[G] - a[0]);
       std::size_t w = G;
 #pragma GCC unroll 4
@@ -149,14 +171,11 @@ void piece_moments_of(const PieceTable& table, const std::vector<double>& weight
 
 /// A piece counts for the region on its left, and backwards for that on its right.
 template <std::size_t width>
-void sum_pieces(std::span<const BoundaryPiece> pieces, std::size_t regions, PieceBatch& batch) {
-  std::fill_n(batch.sums.data(), regions * width, 0.0);
-  const double* row = batch.moments.data();
+void sum_pieces(std::span<const BoundaryPiece> pieces, const double* row, double* sums) {
   for (const BoundaryPiece& piece : pieces) {
-    double* left = batch.sums.data() + static_cast<std::size_t>(piece.left) * width;
-    double* right = piece.right < 0
-                        ? nullptr
-                        : batch.sums.data() + static_cast<std::size_t>(piece.right) * width;
+    double* left = sums + static_cast<std::size_t>(piece.left) * width;
+    double* right =
+        piece.right < 0 ? nullptr : sums + static_cast<std::size_t>(piece.right) * width;
 #pragma GCC unroll 4
     for (std::size_t m = 0; m < width; m += lanes) {
       Lanes moments, sum;
@@ -172,43 +191,55 @@ void sum_pieces(std::span<const BoundaryPiece> pieces, std::size_t regions, Piec
 }
 
 template <int G, int D>
-void region_sums_of(const PieceTable& table, const Vec2& origin, const TargetPlace& place,
-                    std::span<const BoundaryPiece> pieces, std::size_t regions, PieceBatch& batch) {
+void region_sums_of(const PieceTable& table, const TargetPlaces& places,
+                    std::span<const BoundaryPiece> pieces, std::span<const ElementCount> elements,
+                    PieceBatch& batch) {
   constexpr std::size_t width = width_of<G, D>;
   batch.width = width;
-  batch.open = static_cast<std::size_t>(bernstein::triangle_size(D));
-  batch.area = G == 1 ? 0 : batch.open + 2;
-  batch.area_unit = G == 1 ? place.area : 1.0;
+  constexpr auto moments = static_cast<std::size_t>(bernstein::triangle_size(D));
+  batch.open = sums_open(moments);
+  batch.area = sums_area(moments, G > 1);
+  batch.area_in_units = G == 1;
+  std::size_t regions = 0;
+  for (const ElementCount& element : elements) regions += element.regions;
   if (batch.moments.size() < batch.stride * width) batch.moments.resize(2 * batch.stride * width);
   if (batch.sums.size() < regions * width) batch.sums.resize(2 * regions * width);
-  piece_moments_of<G, D>(table, area_weights(G), origin, place, batch);
-  sum_pieces<width>(pieces, regions, batch);
-}
-
-template <int G>
-void region_sums_degree(const PieceTable& table, int degree, const Vec2& origin,
-                        const TargetPlace& place, std::span<const BoundaryPiece> pieces,
-                        std::size_t regions, PieceBatch& batch) {
-  switch (degree) {
-    case 0:
-      return region_sums_of<G, 0>(table, origin, place, pieces, regions, batch);
-    case 2:
-      return region_sums_of<G, 2>(table, origin, place, pieces, regions, batch);
-    case 4:
-      return region_sums_of<G, 4>(table, origin, place, pieces, regions, batch);
-    default:
-      return region_sums_of<G, 6>(table, origin, place, pieces, regions, batch);
+  piece_moments_of<G, D>(table, area_weights(G), places, batch);
+  std::fill_n(batch.sums.data(), regions * width, 0.0);
+  double* sums = batch.sums.data();
+  std::size_t piece = 0;
+  for (const ElementCount& element : elements) {
+    sum_pieces<width>(pieces.subspan(piece, element.pieces), batch.moments.data() + piece * width,
+                      sums);
+    piece += element.pieces;
+    sums += element.regions * width;
   }
 }
 
-void region_sums_target(const PieceTable& table, int degree, const Vec2& origin,
-                        const TargetPlace& place, std::span<const BoundaryPiece> pieces,
-                        std::size_t regions, PieceBatch& batch) {
+template <int G>
+void region_sums_degree(const PieceTable& table, int degree, const TargetPlaces& places,
+                        std::span<const BoundaryPiece> pieces,
+                        std::span<const ElementCount> elements, PieceBatch& batch) {
+  switch (degree) {
+    case 0:
+      return region_sums_of<G, 0>(table, places, pieces, elements, batch);
+    case 2:
+      return region_sums_of<G, 2>(table, places, pieces, elements, batch);
+    case 4:
+      return region_sums_of<G, 4>(table, places, pieces, elements, batch);
+    default:
+      return region_sums_of<G, 6>(table, places, pieces, elements, batch);
+  }
+}
+
+void region_sums_target(const PieceTable& table, int degree, const TargetPlaces& places,
+                        std::span<const BoundaryPiece> pieces,
+                        std::span<const ElementCount> elements, PieceBatch& batch) {
   if (table.degree == 1)
-    return region_sums_degree<1>(table, degree, origin, place, pieces, regions, batch);
+    return region_sums_degree<1>(table, degree, places, pieces, elements, batch);
   if (table.degree == 2)
-    return region_sums_degree<2>(table, degree, origin, place, pieces, regions, batch);
-  return region_sums_degree<3>(table, degree, origin, place, pieces, regions, batch);
+    return region_sums_degree<2>(table, degree, places, pieces, elements, batch);
+  return region_sums_degree<3>(table, degree, places, pieces, elements, batch);
 }
 
 }  // namespace bezel::detail::HWY_NAMESPACE
@@ -227,6 +258,7 @@ void PieceBatch::resize(std::size_t pieces, int degree) {
   if (from.size() < needed) {
     from.resize(2 * needed);
     to.resize(2 * needed);
+    owner.resize(2 * needed);
   }
   if (x.size() < points * needed) {
     x.resize(2 * points * needed);
@@ -234,9 +266,10 @@ void PieceBatch::resize(std::size_t pieces, int degree) {
   }
 }
 
-void region_sums(const PieceTable& table, int degree, const Vec2& origin, const TargetPlace& place,
-                 std::span<const BoundaryPiece> pieces, std::size_t regions, PieceBatch& batch) {
-  HWY_DYNAMIC_DISPATCH(region_sums_target)(table, degree, origin, place, pieces, regions, batch);
+void region_sums(const PieceTable& table, int degree, const TargetPlaces& places,
+                 std::span<const BoundaryPiece> pieces, std::span<const ElementCount> elements,
+                 PieceBatch& batch) {
+  HWY_DYNAMIC_DISPATCH(region_sums_target)(table, degree, places, pieces, elements, batch);
 }
 
 }  // namespace bezel::detail

@@ -21,15 +21,11 @@
 // clang-format off
 #include "hwy/highway.h"
 // clang-format on
-#include "bezel/transfer/polynomial_moves.hpp"
-#include "bezel/transfer/vector_lanes.hpp"
+#include "bezel/transfer/region_kernels.hpp"
 
 #ifndef BEZEL_TRANSFER_REGION_BATCH_ONCE
 #define BEZEL_TRANSFER_REGION_BATCH_ONCE
 namespace bezel::detail {
-/// About the target's centre a donor's polynomial may grow by this factor beyond its size on the
-/// donor: so many roundings are lost.
-inline constexpr double steepest = 32.0;
 /// Of the matrices' rows, padded.
 inline constexpr std::size_t most_blocks =
     padded_to_lanes(static_cast<std::size_t>(bernstein::triangle_size(2 * max_moment_degree))) /
@@ -40,31 +36,9 @@ inline constexpr std::size_t most_blocks =
 HWY_BEFORE_NAMESPACE();
 namespace bezel::detail::HWY_NAMESPACE {
 
-/// x := max(x, |y|)
-HWY_INLINE void raise(Lanes& x, const Lanes& y) {
-  x = select(x < y, y, x);
-  x = select(x < -y, -y, x);
-}
-
 alignas(64) constexpr double zeros[2 * lanes] = {};
 
-/// Where at most eight regions lie in their donors' coordinates, one in each lane, and their
-/// moments; all zero for those that get nothing.
-template <int P>
-struct RegionLanes {
-  static constexpr int size = bernstein::triangle_size(P), twice = bernstein::triangle_size(2 * P);
-  Lanes moments[padded_to_lanes(static_cast<std::size_t>(twice))];
-  Lanes m[4], s, t;
-};
-
-/// The same of one region.
-template <int P>
-struct RegionNumbers {
-  double moments[RegionLanes<P>::twice];
-  double m[4], s, t;
-  Substitution<P, double> substitution;
-};
-
+/// All zero in the lanes of regions that get nothing.
 /// @param number  of the first region in the batch
 template <int P>
 HWY_INLINE void place_regions(const TargetPlace& place, const PieceBatch& batch, std::size_t number,
@@ -79,7 +53,6 @@ HWY_INLINE void place_regions(const TargetPlace& place, const PieceBatch& batch,
       out.moments[m + l] = load(l < regions.size() ? batch.region(number + l) + m : zeros);
     transpose(out.moments + m);
   }
-  // The donors' coordinates: centre x, y, then the gradients of the three barycentrics.
   Lanes frame[lanes];
   for (std::size_t l = 0; l < lanes; ++l) {
     const bool has = l < regions.size() && regions[l].donor != nullptr;
@@ -89,25 +62,15 @@ HWY_INLINE void place_regions(const TargetPlace& place, const PieceBatch& batch,
     else
       frame[l] = Lanes{};
   }
-  transpose(frame);
-  const Lanes apart_x = place.centre.x() - frame[0], apart_y = place.centre.y() - frame[1];
-  Lanes m[4] = {frame[4] * place.along_first.x() + frame[5] * place.along_first.y(),
-                frame[4] * place.along_second.x() + frame[5] * place.along_second.y(),
-                frame[6] * place.along_first.x() + frame[7] * place.along_first.y(),
-                frame[6] * place.along_second.x() + frame[7] * place.along_second.y()};
-  const Lanes s = frame[4] * apart_x + frame[5] * apart_y,
-              t = frame[6] * apart_x + frame[7] * apart_y;
-  Lanes slope{}, reach{};
-  for (const Lanes& x : m) raise(slope, x);
-  raise(reach, s);
-  raise(reach, t);
-  const Lanes steep = slope + reach;
-  Lanes power = Lanes{} + 1.0;
-  for (int e = 0; e < P; ++e) power *= steep;
+  const Lanes none{};
+  const TargetLanes target{none + place.centre.x(),       none + place.centre.y(),
+                           none + place.along_first.x(),  none + place.along_first.y(),
+                           none + place.along_second.x(), none + place.along_second.y()};
+  Lanes m[4], s, t;
+  const Lanes power = place_donors<P>(target, frame, m, s, t);
   Lanes kept;
   kept = load(keep);
   const auto near = (power <= steepest) & (kept > 0.0);
-  const Lanes none{};
   for (int i = 0; i < 4; ++i) out.m[i] = select(near, m[i], none);
   out.s = select(near, s, none);
   out.t = select(near, t, none);
@@ -121,25 +84,6 @@ HWY_INLINE void place_regions(const TargetPlace& place, const PieceBatch& batch,
   for (int b = 0; b <= P; ++b) {
 #pragma GCC unroll 4
     for (int a = 0; a <= P - b; ++a) total_basis[at(P, a, b)] += out.moments[at(2 * P, a, b)];
-  }
-}
-
-/// sums[n] = integral of f m_n from the moments, both polynomials in the target's coordinates.
-template <int P, class S>
-HWY_INLINE void multiply(const S* moments, const Lanes* f, Lanes* sums) {
-#pragma GCC unroll 4
-  for (int b = 0; b <= P; ++b) {
-#pragma GCC unroll 4
-    for (int a = 0; a <= P - b; ++a) {
-      Lanes sum{};
-#pragma GCC unroll 4
-      for (int d = 0; d <= P; ++d) {
-#pragma GCC unroll 4
-        for (int e = 0; e <= P - d; ++e)
-          sum = mul_add(moments[at(2 * P, a + e, b + d)], f[at(P, e, d)], sum);
-      }
-      sums[at(P, a, b)] = sum;
-    }
   }
 }
 
@@ -187,15 +131,7 @@ void add_components(const RegionLanes<P>& place, std::span<const BatchRegion> re
                     std::size_t components, const double* base, double* product, double* mass) {
   constexpr auto size = static_cast<std::size_t>(RegionLanes<P>::size);
   std::array<RegionNumbers<P>, lanes> numbers;
-  for (std::size_t l = 0; l < regions.size(); ++l) {
-    const auto lane = [&](const Lanes& x) { return x[l]; };
-    RegionNumbers<P>& own = numbers[l];
-    for (int n = 0; n < place.twice; ++n) own.moments[n] = lane(place.moments[n]);
-    for (int i = 0; i < 4; ++i) own.m[i] = lane(place.m[i]);
-    own.s = lane(place.s);
-    own.t = lane(place.t);
-    if constexpr (P > 0) own.substitution = Substitution<P, double>(own.m);
-  }
+  for (std::size_t l = 0; l < regions.size(); ++l) numbers[l] = RegionNumbers<P>(place, l);
   for (std::size_t c = 0; c < components; c += lanes) {
     const std::size_t count = std::min(lanes, components - c);
     const Lanes off = load(base + c);
@@ -206,17 +142,9 @@ void add_components(const RegionLanes<P>& place, std::span<const BatchRegion> re
         std::fill_n(own_mass, count, 0.0);
         continue;
       }
-      Lanes f[size], sums[size];
-#pragma GCC unroll 10
-      for (std::size_t n = 0; n < size; ++n) f[n] = load(regions[l].donor + n * components + c);
-      f[0] -= off;
-      const RegionNumbers<P>& own = numbers[l];
-      if constexpr (P > 0) {
-        move_polynomial<P>(f, own.s, own.t);
-        own.substitution.apply(f);
-      }
-      multiply<P>(own.moments, f, sums);
-      store_part(sums[0] + off * own.moments[0], own_mass, count);
+      Lanes sums[size];
+      store_part(numbers[l].integrate(regions[l].donor + c, components, off, sums), own_mass,
+                 count);
 #pragma GCC unroll 10
       for (std::size_t n = 0; n < size; ++n) total[n] += sums[n];
     }
@@ -318,38 +246,20 @@ double solve_one(const StraightSystem& system, const double* matrix, double* coe
 template <int P>
 double solve_components(const StraightSystem& system, const double* matrix, double* coefficients) {
   constexpr auto size = static_cast<std::size_t>(bernstein::triangle_size(P));
-  constexpr std::size_t padded = padded_to_lanes(size);
   const auto nc = static_cast<std::size_t>(system.components);
-  const double scale = 0.5 / system.area, per_function = system.area / static_cast<double>(size);
   double largest = 0.0;
   for (std::size_t c = 0; c < nc; c += lanes) {
     const std::size_t count = std::min(lanes, nc - c);
-    const Lanes mass = load(system.mass + c), mean = mass / system.covered;
-    const Lanes rest = mean - load(system.base + c);
-    Lanes x[padded] = {};
+    Lanes product[size], values[size];
 #pragma GCC unroll 10
-    for (std::size_t m = 0; m < size; ++m) {
-      const Lanes value = (load(system.product + m * nc + c) - rest * system.basis[m]) * scale;
+    for (std::size_t n = 0; n < size; ++n) product[n] = load(system.product + n * nc + c);
+    const Lanes defect =
+        solve_lanes<P>(product, system.basis, load(system.mass + c), load(system.base + c),
+                       system.area, system.covered, matrix, values);
 #pragma GCC unroll 10
-      for (std::size_t n = 0; n < size; ++n) x[n] = mul_add(matrix[m * padded + n], value, x[n]);
-    }
-    // In the order of sum_of().
-    const auto in_order = [](const Lanes* r) {
-      return ((r[0] + r[4]) + (r[2] + r[6])) + ((r[1] + r[5]) + (r[3] + r[7]));
-    };
-    Lanes sum = in_order(x);
-    if constexpr (padded > lanes) sum += in_order(x + lanes);
-    const Lanes got = sum * per_function + mean * system.area;
-    const Lanes shift = mean + (mass - got) / system.area;
-    sum = Lanes{};
-#pragma GCC unroll 10
-    for (std::size_t n = 0; n < size; ++n) {
-      const Lanes value = x[n] + shift;
-      store_part(value, coefficients + n * nc + c, count);
-      sum += value;
-    }
+    for (std::size_t n = 0; n < size; ++n) store_part(values[n], coefficients + n * nc + c, count);
     alignas(64) double defects[lanes];
-    store(mass - sum * per_function, defects);
+    store(defect, defects);
     for (std::size_t l = 0; l < count; ++l) largest = std::max(largest, std::abs(defects[l]));
   }
   return largest;
@@ -459,9 +369,13 @@ void add_batch(int degree, const TargetPlace& place, const PieceBatch& batch,
   (degree, place, batch, regions, static_cast<std::size_t>(components), base, product, basis, mass);
 }
 
+const double* projection_rows(int degree) {
+  return projection_matrix(degree).rows.data();
+}
+
 double solve_straight(const StraightSystem& system, double* coefficients) {
-  return HWY_DYNAMIC_DISPATCH(solve_straight_target)(
-      system, projection_matrix(system.degree).rows.data(), coefficients);
+  return HWY_DYNAMIC_DISPATCH(solve_straight_target)(system, projection_rows(system.degree),
+                                                     coefficients);
 }
 
 void powers_from_moments(int degree, int components, const double* moments, double* powers) {

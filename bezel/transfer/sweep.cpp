@@ -146,7 +146,7 @@ std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayM
         const auto t0 = clock::now();
         worker->find_overlays(others, result.counts);
         const auto t1 = clock::now();
-        std::size_t overlaid = 0;
+        std::size_t next = 0, together_begin = 0, together_end = 0;  // among the others
         double solve = 0.0;
         for (std::size_t i = begin; i < end; ++i) {
           const std::int32_t t = elements[i];
@@ -154,9 +154,18 @@ std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayM
             if (visit) visit(i, t, worker->flat.block_of(i - begin));
             continue;
           }
+          const std::size_t at = next++;
+          const ElementPieces pieces = worker->overlays[at];
           made_here.assign(components, 0.0);
-          const ElementOutcome outcome = worker->element.process(
-              t, worker->overlays[overlaid++], result.given, made_here, visit ? &blocks : nullptr);
+          if (at >= together_end && !visit) {
+            together_begin = at;
+            together_end = at + worker->element.begin_together(others, worker->overlays, at);
+          }
+          const bool ready = at < together_end && worker->element.together(at - together_begin);
+          const ElementOutcome outcome =
+              ready ? worker->element.take(at - together_begin, t, pieces, result.given)
+                    : worker->element.process(t, pieces, result.given, made_here,
+                                              visit ? &blocks : nullptr);
           if (visit) visit(i, t, blocks);
           for (std::size_t c = 0; c < components; ++c) result.made[c] += made_here[c];
           if (options.conserve == Conserve::total &&

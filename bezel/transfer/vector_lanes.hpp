@@ -7,6 +7,7 @@
 #define BEZEL_TRANSFER_VECTOR_LANES_HPP
 #endif
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -133,6 +134,12 @@ struct Lanes {
   friend HWY_INLINE Mask operator<=(const Lanes& a, double b) {
     return each<Mask>([&](std::size_t i) -> Truth { return a.part[i] <= Part{} + b; });
   }
+  friend HWY_INLINE Mask operator<=(const Lanes& a, const Lanes& b) {
+    return each<Mask>([&](std::size_t i) -> Truth { return a.part[i] <= b.part[i]; });
+  }
+  friend HWY_INLINE Mask operator>=(const Lanes& a, double b) {
+    return each<Mask>([&](std::size_t i) -> Truth { return a.part[i] >= Part{} + b; });
+  }
   friend HWY_INLINE Mask operator>(const Lanes& a, double b) {
     return each<Mask>([&](std::size_t i) -> Truth { return a.part[i] > Part{} + b; });
   }
@@ -167,6 +174,23 @@ HWY_INLINE Lanes lanes_of(double a, double b, double c, double d, double e, doub
 HWY_INLINE void store_part(const Lanes& x, double* p, std::size_t count) {
   if (count >= lanes) return store(x, p);
   for (std::size_t l = 0; l < count; ++l) p[l] = x[l];
+}
+
+/// The table's numbers at eight places.
+HWY_INLINE Lanes pick(const double* table, const std::int64_t* at) {
+#if HWY_TARGET <= HWY_AVX3
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::CappedTag<double, lanes> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  Lanes r;
+  hn::StoreU(hn::TableLookupLanes(hn::LoadU(d, table), hn::IndicesFromVec(d, hn::LoadU(di, at))), d,
+             reinterpret_cast<double*>(&r));
+  return r;
+#else
+  double all[lanes];
+  for (std::size_t l = 0; l < lanes; ++l) all[l] = table[at[l]];
+  return load(all);
+#endif
 }
 
 /// a b + c, rounded once where the target can.
@@ -206,6 +230,30 @@ HWY_INLINE Lanes mul_add(double a, const Lanes& b, const Lanes& c) {
 #else
   return mul_add(Lanes::all(a), b, c);
 #endif
+}
+
+HWY_INLINE Lanes root(const Lanes& x) {
+  Lanes r;
+#if HWY_TARGET == HWY_SCALAR
+  double all[lanes];
+  store(x, all);
+  for (double& a : all) a = std::sqrt(a);
+  r = load(all);
+#else
+  namespace hn = hwy::HWY_NAMESPACE;
+#if HWY_TARGET <= HWY_AVX3
+  using Part = Lanes;
+#else
+  using Part = Lanes::Part;
+#endif
+  const hn::CappedTag<double, sizeof(Part) / sizeof(double)> d;
+  const auto* from = reinterpret_cast<const double*>(&x);
+  auto* to = reinterpret_cast<double*>(&r);
+#pragma GCC unroll 4
+  for (std::size_t i = 0; i < lanes; i += sizeof(Part) / sizeof(double))
+    hn::StoreU(hn::Sqrt(hn::LoadU(d, from + i)), d, to + i);
+#endif
+  return r;
 }
 
 HWY_INLINE double sum_of(const Lanes& x) {

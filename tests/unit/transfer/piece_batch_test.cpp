@@ -57,7 +57,9 @@ struct Cut {
               affine_frame({Vec2{{0.5, 0.0}}, Vec2{{1.6, 0.4}}, Vec2{{0.2, 1.3}}})};
   }
   void sum(int degree, int moments) {
-    region_sums(PieceTable(degree, moments), moments, Vec2{{0.6, 0.5}}, place, pieces, 2, batch);
+    const ElementCount all{static_cast<std::uint32_t>(pieces.size()), 2};
+    region_sums(PieceTable(degree, moments), moments, {place, Vec2{{0.6, 0.5}}}, pieces, {&all, 1},
+                batch);
   }
   TargetPlace place;
   std::vector<BoundaryPiece> pieces;
@@ -196,8 +198,9 @@ TEST(MomentBatch, RegionsCloseAndAddUp) {
       const double whole = 0.5 * cross(Vec2{{1.1, 0.2}}, Vec2{{0.2, 1.1}});
       const double* corner = cut.batch.region(0);
       const double* rest = cut.batch.region(1);
-      const double corner_area = corner[cut.batch.area] * cut.batch.area_unit;
-      const double rest_area = rest[cut.batch.area] * cut.batch.area_unit;
+      const double unit = cut.batch.area_in_units ? cut.place.area : 1.0;
+      const double corner_area = corner[cut.batch.area] * unit;
+      const double rest_area = rest[cut.batch.area] * unit;
       EXPECT_NEAR(corner_area, whole * 0.3 * 0.4, 1e-15);
       EXPECT_NEAR(rest_area, whole * (1.0 - 0.3 * 0.4), 1e-15);
       EXPECT_NEAR(corner[0] * cut.place.area, corner_area, 1e-15);
