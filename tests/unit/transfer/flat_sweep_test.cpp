@@ -194,6 +194,19 @@ TEST(FlatSweep, OperatorsAndContinuousTargets) {
   }
 }
 
+// The weight's polynomials live on frames that are known to 1e-16 over the width.
+TEST(FlatSweep, WeightsArePolynomialsUpToTheRoundingOfFrames) {
+  const Vec2 to{{1.0, -0.5}};
+  const auto donor = strip(test::grid_mesh(3, 2, 1.0, test::bend(0.1, 0.1)), 1e-6, 0.3, to);
+  const auto target = strip(test::grid_mesh(2, 2, 1.0, test::bend(-0.1, 0.1)), 1e-6, 0.3, to);
+  const std::vector<Field> fields = {constant_and_noise(Space::discontinuous(donor, 1))};
+  TransferOptions options;
+  options.weight = Formula("x^2+1");
+  const TransferResult result = transfer(fields, target, options);
+  for (const FieldReport& line : result.report.fields) EXPECT_LE(line.relative_mass_defect, 1e-14);
+  EXPECT_LE(off_constant(result.fields[0]), 1e-10);
+}
+
 TEST(FlatSweep, ThreadsGiveTheSameBits) {
   const Vec2 to{{1.0, -0.5}};
   const auto donor = strip(test::grid_mesh(20, 1, 1.0, test::bend(0.1, 0.1)), 1e-5, 0.3, to);
