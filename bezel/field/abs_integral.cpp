@@ -79,7 +79,7 @@ AbsIntegral::AbsIntegral(std::shared_ptr<const Space> space, int threads)
     for (std::size_t e = from; e < to; ++e) {
       const ElementId id(e);
       const Frame& frame = space_->frame(id);
-      if (mesh.degree() == 1 && is_own_frame(frame, corners(mesh, id))) {
+      if (space_->is_own_frame(id)) {
         shape_[e] = Shape::straight;
         continue;
       }

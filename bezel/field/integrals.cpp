@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "bezel/bernstein/fixed_size.hpp"
-#include "bezel/bernstein/multinomial.hpp"
 #include "bezel/field/element_kernel.hpp"
 #include "bezel/numeric/eft.hpp"
 #include "bezel/numeric/lanes.hpp"
@@ -16,37 +15,6 @@ namespace {
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
-}
-
-/// out[n] = sum over the points of weight B_n(u, v), the number of points a multiple of lanes.
-void sum_basis(int d, std::span<const double> u, std::span<const double> v,
-               std::span<const double> weight, std::span<const double> multinomial, double* out) {
-  constexpr std::size_t room = static_cast<std::size_t>(Space::max_degree) + 1;
-  double sums[static_cast<std::size_t>(largest_size)][lanes] = {};
-  double p0[room][lanes], p1[room][lanes], p2[lanes], first[lanes];
-  for (std::size_t start = 0; start < u.size(); start += lanes) {
-    for (std::size_t l = 0; l < lanes; ++l) {
-      first[l] = 1.0 - u[start + l] - v[start + l];
-      p0[0][l] = p1[0][l] = 1.0;
-      p2[l] = weight[start + l];
-    }
-    for (std::size_t i = 1; i <= at(d); ++i) {
-      for (std::size_t l = 0; l < lanes; ++l) {
-        p0[i][l] = p0[i - 1][l] * first[l];
-        p1[i][l] = p1[i - 1][l] * u[start + l];
-      }
-    }
-    std::size_t n = 0;
-    for (int k = 0; k <= d; ++k) {
-      for (int j = 0; j <= d - k; ++j, ++n)
-        for (std::size_t l = 0; l < lanes; ++l)
-          sums[n][l] += p0[at(d - k - j)][l] * p1[at(j)][l] * p2[l];
-      for (std::size_t l = 0; l < lanes; ++l) p2[l] *= v[start + l];
-    }
-  }
-  for (std::size_t n = 0; n < multinomial.size(); ++n) {
-    out[n] = multinomial[n] * sum_of_lanes(sums[n]);
-  }
 }
 
 /// out[e * stride + k] = sum over an element's coefficients of basis[i] c[i, k], for elements of
@@ -148,64 +116,10 @@ MapRule::MapRule(int map_degree, const TriangleRule& rule)
   map = MapTable(map_degree, lambda);
 }
 
-bool is_own_frame(const Frame& frame, const std::array<Vec2, 3>& corner) {
-  double slope = 0.0;
-  for (const Vec2& g : frame.gradient) slope = std::max({slope, std::abs(g.x()), std::abs(g.y())});
-  const double reach = std::max(std::abs(frame.centre.x()), std::abs(frame.centre.y()));
-  double largest = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Lambda l = frame.lambda(corner[k]);
-    for (std::size_t i = 0; i < 3; ++i)
-      largest = std::max(largest, std::abs(l[i] - (i == k ? 1.0 : 0.0)));
-  }
-  return largest <= 0x1p-51 * (2.0 + reach * slope);
-}
-
 std::size_t component_count(std::span<const Field* const> fields) {
   std::size_t count = 0;
   for (const Field* f : fields) count += at(f->components());
   return count;
-}
-
-std::vector<double> basis_integrals(const Space& space, int threads) {
-  const TriangleMesh& mesh = *space.mesh();
-  const bool physical = space.basis() == Basis::physical;
-  const bool straight = mesh.degree() == 1;
-  std::vector<double> out(space.coefficient_count());
-  std::vector<MapRule> rules(at(Space::max_degree) + 1);
-  for (const int p : degrees_of(space))
-    rules[at(p)] = MapRule(mesh.degree(), rule_of_degree(integrand_degree(space, p)));
-  for_chunks(mesh.element_count(), threads, [&](std::size_t from, std::size_t to) {
-    std::vector<double> x, y, w;
-    for (std::size_t e = from; e < to; ++e) {
-      const ElementId id(e);
-      const int p = space.degree(id);
-      if (straight) {
-        // All functions of a triangle's own barycentrics have one integral.
-        const std::array<Vec2, 3> c = corners(mesh, id);
-        if (!physical || is_own_frame(space.frame(id), c)) {
-          const auto n = at(bernstein::triangle_size(p));
-          const double each = 0.5 * triangle_cross(c[0], c[1], c[2]) / static_cast<double>(n);
-          std::fill_n(out.data() + space.offset(id), n, each);
-          continue;
-        }
-      }
-      const MapRule& rule = rules[at(p)];
-      const std::size_t points = rule.map.size();
-      x.resize(points);
-      y.resize(points);
-      w.resize(points);
-      const ElementMap element(mesh, id);
-      const RoundControl round(element.control());
-      rule.map(round.points(), x, y, w);
-      for (std::size_t q = 0; q < points; ++q) w[q] *= rule.weight[q];
-      if (physical) to_frame(moved(round.map(), space.frame(id)), x, y);
-      sum_basis(p, physical ? std::span<const double>(x) : rule.u,
-                physical ? std::span<const double>(y) : rule.v, w, bernstein::multinomials(p),
-                out.data() + space.offset(id));
-    }
-  });
-  return out;
 }
 
 std::vector<double> element_integrals(std::span<const Field* const> fields,

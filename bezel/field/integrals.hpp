@@ -39,12 +39,10 @@ struct MapRule {
 /// Integral of each basis function over its element, in the order of the coefficients.
 /// @accuracy each within about 20 u of itself, and of the largest where a frame does not hold its
 ///           element
-/// @cost     one quadrature per element
+/// @cost     in a physical basis on curved elements a quadrature along the sides, measured 0.4 us
+/// an
+///           element of degree 3 with functions of degree 3; else less
 std::vector<double> basis_integrals(const Space& space, int threads = 0);
-
-/// Whether a straight triangle is its own frame, up to the rounding of barycentric coordinates at
-/// its place in the plane.
-bool is_own_frame(const Frame& frame, const std::array<Vec2, 3>& corners);
 
 /// How many components some fields have together. Below, those of several fields of one space are
 /// numbered one field after the other.

@@ -229,8 +229,7 @@ bool are_straight(const Space& space, std::size_t from, std::size_t to) {
   if (space.basis() == Basis::reference) return true;
   for (std::size_t e = from; e < to; ++e) {
     const ElementId id(e);
-    if (!field_detail::is_own_frame(space.frame(id), field_detail::corners(*space.mesh(), id)))
-      return false;
+    if (!space.is_own_frame(id)) return false;
   }
   return true;
 }

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "bezel/base/error.hpp"
-#include "bezel/base/parallel.hpp"
+#include "bezel/field/element_kernel.hpp"
 
 namespace bezel {
 namespace {
@@ -58,8 +58,10 @@ Vec2 cube_root_direction(const Vec2& s) {
   for (int step = 0; step < 8; ++step) {
     const Vec2 square = times(w, w);
     const Vec2 inverse = Vec2{square.x(), -square.y()} * (1.0 / dot(square, square));
+    const Vec2 last = w;
     w = (2.0 * w + times(unit, inverse)) * (1.0 / 3.0);
     w = w * (1.0 / norm(w));
+    if (w == last) break;
   }
   return w;
 }
@@ -95,6 +97,43 @@ void check_frame(const Frame& frame, std::int64_t element) {
     fail("the gradients are parallel, expected a triangle with an area");
 }
 
+/// Twice a triangle's area over the squares of two sides, above which it is far from thin.
+constexpr double well_shaped = 1e-3;
+/// Squares of sides between these leave room for what is made of them when the triangle is not
+/// thin.
+constexpr double least_square = 1e-280, largest_square = 1e300;
+
+/// A straight triangle is its own frame; written down at once when it is not thin, nor so large or
+/// small that products overflow or vanish: then false.
+bool straight_frame(const Vec2& p0, const Vec2& p1, const Vec2& p2, Frame& frame) {
+  const Vec2 a = p1 - p0, b = p2 - p0;
+  const double det = a.x() * b.y() - a.y() * b.x();
+  const double square = dot(a, a) + dot(b, b);
+  if (!(det > well_shaped * square && square > least_square && square < largest_square))
+    return false;
+  frame.centre = p0 + (a + b) * (1.0 / 3.0);
+  frame.gradient[0] = {(a.y() - b.y()) / det, (b.x() - a.x()) / det};
+  frame.gradient[1] = {b.y() / det, -b.x() / det};
+  frame.gradient[2] = -(frame.gradient[0] + frame.gradient[1]);
+  return true;
+}
+
+/// Whether a straight triangle is its own frame, up to the rounding of barycentric coordinates at
+/// its place in the plane.
+bool is_own(const Frame& frame, const std::array<Vec2, 3>& corner) {
+  const auto size = [](const Vec2& p) { return std::max(std::abs(p.x()), std::abs(p.y())); };
+  const auto& g = frame.gradient;
+  const double slope = std::max(std::max(size(g[0]), size(g[1])), size(g[2]));
+  const double reach = size(frame.centre);
+  double largest = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    Lambda l = frame.lambda(corner[k]);
+    l[k] -= 1.0;
+    largest = std::max(std::max(largest, std::abs(l[0])), std::max(std::abs(l[1]), std::abs(l[2])));
+  }
+  return largest <= 0x1p-51 * (2.0 + reach * slope);
+}
+
 }  // namespace
 
 Vec2 Frame::point(const std::array<double, 3>& l) const {
@@ -109,9 +148,6 @@ std::array<Vec2, 3> Frame::corners() const {
   return {point({1.0, 0.0, 0.0}), point({0.0, 1.0, 0.0}), point({0.0, 0.0, 1.0})};
 }
 
-/// Twice a triangle's area over the squares of two sides, above which it is far from thin.
-constexpr double well_shaped = 1e-3;
-
 Frame element_frame(std::span<const Vec2> control) {
   if (control.empty()) throw InputError("an element frame needs control points, found none");
   Box2 box;
@@ -122,19 +158,8 @@ Frame element_frame(std::span<const Vec2> control) {
   if (!(box.diameter() > 0.0))
     throw InputError("all control points of an element coincide, expected a triangle");
 
-  // A straight triangle is its own frame; written down at once when it is not thin.
-  if (control.size() == 3) {
-    const Vec2 a = control[1] - control[0], b = control[2] - control[0];
-    const double det = a.x() * b.y() - a.y() * b.x();
-    if (det > well_shaped * (dot(a, a) + dot(b, b))) {
-      Frame frame;
-      frame.centre = control[0] + (a + b) * (1.0 / 3.0);
-      frame.gradient[0] = {(a.y() - b.y()) / det, (b.x() - a.x()) / det};
-      frame.gradient[1] = {b.y() / det, -b.x() / det};
-      frame.gradient[2] = -(frame.gradient[0] + frame.gradient[1]);
-      return frame;
-    }
-  }
+  Frame own;
+  if (control.size() == 3 && straight_frame(control[0], control[1], control[2], own)) return own;
 
   // z = L^-1 Q^T (p - start): covariance 1. Turning to the principal axes first keeps the digits of
   // thin elements.
@@ -196,53 +221,93 @@ std::size_t Space::offset(ElementId e) const {
              : offsets_[e.index()];
 }
 
+std::shared_ptr<Space> Space::uniform(std::shared_ptr<const TriangleMesh> mesh, int degree) {
+  std::shared_ptr<Space> space(new Space);
+  space->mesh_ = std::move(mesh);
+  const std::size_t n = space->mesh_->element_count();
+  space->uniform_degree_ = space->highest_degree_ = n > 0 ? degree : 0;
+  space->coefficient_count_ = n * static_cast<std::size_t>(bernstein::triangle_size(degree));
+  space->dof_count_ = space->coefficient_count_;
+  return space;
+}
+
+std::shared_ptr<Space> Space::by_element(std::shared_ptr<const TriangleMesh> mesh,
+                                         std::vector<int> degrees) {
+  const std::size_t n = mesh->element_count();
+  if (degrees.size() != n)
+    throw InputError(fmt::format("found {} degrees, expected one for each of the {} elements",
+                                 degrees.size(), n));
+  int highest = 0;
+  for (std::size_t e = 0; e < n; ++e) {
+    check_degree(degrees[e], 0, static_cast<std::int64_t>(e));
+    highest = std::max(highest, degrees[e]);
+  }
+  if (std::all_of(degrees.begin(), degrees.end(), [&](int d) { return d == highest; }))
+    return uniform(std::move(mesh), highest);
+  std::shared_ptr<Space> space(new Space);
+  space->mesh_ = std::move(mesh);
+  space->highest_degree_ = highest;
+  space->offsets_.reserve(n);
+  for (const int d : degrees) {
+    space->offsets_.push_back(space->coefficient_count_);
+    space->coefficient_count_ += static_cast<std::size_t>(bernstein::triangle_size(d));
+  }
+  space->degrees_ = std::move(degrees);
+  space->dof_count_ = space->coefficient_count_;
+  return space;
+}
+
+void Space::make_frames(int threads) {
+  basis_ = Basis::physical;
+  frames_.resize(mesh_->element_count());
+  const std::size_t size = static_cast<std::size_t>(mesh_->nodes_per_element());
+  field_detail::for_chunks(frames_.size(), threads, [&](std::size_t from, std::size_t to) {
+    std::array<Vec2, static_cast<std::size_t>(field_detail::largest_size)> control;
+    for (std::size_t e = from; e < to; ++e) {
+      const auto nodes = mesh_->nodes(ElementId(e));
+      for (std::size_t n = 0; n < size; ++n) control[n] = mesh_->control(nodes[n]);
+      if (size == 3 && straight_frame(control[0], control[1], control[2], frames_[e])) continue;
+      try {
+        frames_[e] = element_frame({control.data(), size});
+      } catch (const InputError& error) {
+        throw InputError({{}, 0, "triangle", static_cast<std::int64_t>(e)}, error.message());
+      }
+      check_frame(frames_[e], static_cast<std::int64_t>(e));
+    }
+  });
+}
+
+void Space::compare_frames(int threads) {
+  if (mesh_->degree() > 1) return;
+  own_frame_.resize(frames_.size());
+  field_detail::for_chunks(frames_.size(), threads, [&](std::size_t from, std::size_t to) {
+    for (std::size_t e = from; e < to; ++e)
+      own_frame_[e] = is_own(frames_[e], field_detail::corners(*mesh_, ElementId(e))) ? 1 : 0;
+  });
+  own_frames_ = std::find(own_frame_.begin(), own_frame_.end(), 0) == own_frame_.end();
+  if (own_frames_) own_frame_ = {};
+}
+
 std::shared_ptr<const Space> Space::discontinuous(std::shared_ptr<const TriangleMesh> mesh,
-                                                  int degree, Basis basis) {
+                                                  int degree, Basis basis, int threads) {
   check_mesh(mesh);
   check_degree(degree, 0);
-  return discontinuous(mesh, std::vector<int>(mesh->element_count(), degree), basis);
+  std::shared_ptr<Space> space = uniform(std::move(mesh), degree);
+  if (basis == Basis::physical) {
+    space->make_frames(threads);
+    space->compare_frames(threads);
+  }
+  return space;
 }
 
 std::shared_ptr<const Space> Space::discontinuous(std::shared_ptr<const TriangleMesh> mesh,
                                                   std::vector<int> degrees, Basis basis) {
   check_mesh(mesh);
-  std::vector<Frame> frames;
+  std::shared_ptr<Space> space = by_element(std::move(mesh), std::move(degrees));
   if (basis == Basis::physical) {
-    frames.resize(mesh->element_count());
-    parallel_for(frames.size(), [&](std::size_t e) {
-      try {
-        frames[e] = element_frame(mesh->gather(ElementId(e)));
-      } catch (const InputError& error) {
-        throw InputError({{}, 0, "triangle", static_cast<std::int64_t>(e)}, error.message());
-      }
-    });
-    return discontinuous(std::move(mesh), std::move(degrees), std::move(frames));
+    space->make_frames(0);
+    space->compare_frames(0);
   }
-  const std::size_t n = mesh->element_count();
-  if (degrees.size() != n)
-    throw InputError(fmt::format("found {} degrees, expected one for each of the {} elements",
-                                 degrees.size(), n));
-  std::shared_ptr<Space> space(new Space);
-  space->mesh_ = std::move(mesh);
-  for (std::size_t e = 0; e < n; ++e) {
-    check_degree(degrees[e], 0, static_cast<std::int64_t>(e));
-    space->highest_degree_ = std::max(space->highest_degree_, degrees[e]);
-  }
-  const bool uniform = std::all_of(degrees.begin(), degrees.end(),
-                                   [&](int d) { return d == space->highest_degree_; });
-  space->uniform_degree_ = uniform ? space->highest_degree_ : -1;
-  if (uniform) {
-    space->coefficient_count_ =
-        n * static_cast<std::size_t>(bernstein::triangle_size(space->highest_degree_));
-  } else {
-    space->offsets_.reserve(n);
-    for (std::size_t e = 0; e < n; ++e) {
-      space->offsets_.push_back(space->coefficient_count_);
-      space->coefficient_count_ += static_cast<std::size_t>(bernstein::triangle_size(degrees[e]));
-    }
-    space->degrees_ = std::move(degrees);
-  }
-  space->dof_count_ = space->coefficient_count_;
   return space;
 }
 
@@ -255,11 +320,10 @@ std::shared_ptr<const Space> Space::discontinuous(std::shared_ptr<const Triangle
     throw InputError(
         fmt::format("found {} frames, expected one for each of the {} elements", frames.size(), n));
   for (std::size_t e = 0; e < n; ++e) check_frame(frames[e], static_cast<std::int64_t>(e));
-  const std::shared_ptr<const Space> plain =
-      discontinuous(std::move(mesh), std::move(degrees), Basis::reference);
-  std::shared_ptr<Space> space(new Space(*plain));
+  std::shared_ptr<Space> space = by_element(std::move(mesh), std::move(degrees));
   space->basis_ = Basis::physical;
   space->frames_ = std::move(frames);
+  space->compare_frames(0);
   return space;
 }
 
@@ -271,8 +335,7 @@ std::shared_ptr<const Space> Space::continuous(std::shared_ptr<const TriangleMes
         "a continuous space cannot use the physical basis: it is non-conforming on curved edges; "
         "use the reference basis, or a discontinuous space");
   check_degree(degree, 1);
-  const std::shared_ptr<const Space> plain = discontinuous(mesh, degree, Basis::reference);
-  std::shared_ptr<Space> space(new Space(*plain));
+  std::shared_ptr<Space> space = uniform(mesh, degree);
   space->continuity_ = Continuity::continuous;
 
   const std::size_t per_edge = static_cast<std::size_t>(degree - 1);

@@ -2,6 +2,7 @@
 // Spaces of piecewise polynomials on a mesh.
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -71,7 +72,8 @@ class Space {
   /// @throws InputError for a null mesh, a bad degree, or (physical basis) an element without
   /// extent
   static std::shared_ptr<const Space> discontinuous(std::shared_ptr<const TriangleMesh> mesh,
-                                                    int degree, Basis basis = Basis::reference);
+                                                    int degree, Basis basis = Basis::reference,
+                                                    int threads = 0);
   /// Discontinuous, a degree per element.
   /// @param degrees  one per element, each 0..max_degree
   /// @throws InputError as above, naming the triangle; or when the number of degrees is wrong
@@ -114,6 +116,13 @@ class Space {
   std::span<const std::int32_t> dofs(ElementId e) const;
   const Frame& frame(ElementId e) const { return frames_[e.index()]; }  ///< physical basis only
   std::span<const Frame> frames() const { return frames_; }
+  /// Whether the element is straight and its frame is the element itself, up to the rounding of
+  /// barycentric coordinates at its place in the plane (physical basis; else false).
+  bool is_own_frame(ElementId e) const {
+    return own_frames_ || (!own_frame_.empty() && own_frame_[e.index()] != 0);
+  }
+  /// Whether that is so for all elements.
+  bool has_own_frames() const { return own_frames_; }
 
   /// Element coefficients from dofs, components interleaved (a copy when discontinuous).
   /// @param dofs  shape (dof_count(), components)
@@ -123,6 +132,12 @@ class Space {
 
  private:
   Space() = default;
+  static std::shared_ptr<Space> uniform(std::shared_ptr<const TriangleMesh> mesh, int degree);
+  static std::shared_ptr<Space> by_element(std::shared_ptr<const TriangleMesh> mesh,
+                                           std::vector<int> degrees);
+  void make_frames(int threads);
+  void compare_frames(int threads);
+
   std::shared_ptr<const TriangleMesh> mesh_;
   Basis basis_ = Basis::reference;
   Continuity continuity_ = Continuity::discontinuous;
@@ -133,6 +148,8 @@ class Space {
   std::size_t coefficient_count_ = 0, dof_count_ = 0;
   std::vector<std::int32_t> dofs_;
   std::vector<Frame> frames_;
+  bool own_frames_ = false;
+  std::vector<std::uint8_t> own_frame_;  // by element where some are and some are not
 };
 
 }  // namespace bezel

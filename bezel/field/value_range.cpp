@@ -12,6 +12,7 @@
 #include "bezel/field/element_kernel.hpp"
 #include "bezel/field/element_range.hpp"
 #include "bezel/field/piece_bounds.hpp"
+#include "bezel/numeric/numbers.hpp"
 
 namespace bezel {
 namespace {
@@ -67,6 +68,7 @@ ValueRanges::ValueRanges(std::shared_ptr<const Space> space, int threads)
   const std::size_t elements = mesh.element_count();
   if (elements == 0) throw InputError("a mesh without elements has no range of values");
   if (space_->basis() == Basis::reference) return;
+  const bool straight = mesh.degree() == 1;
   widening_.resize(elements);
   exact_.resize(elements);
   field_detail::for_chunks(elements, threads, [&](std::size_t from, std::size_t to) {
@@ -77,9 +79,12 @@ ValueRanges::ValueRanges(std::shared_ptr<const Space> space, int threads)
       double least = 0.0, apart = 0.0;
       for (std::size_t n = 0; n < nodes.size(); ++n) {
         const Lambda l = frame.lambda(mesh.control(nodes[n]));
-        least = std::min({least, l[0], l[1], l[2]});
-        for (std::size_t k = 0; k < 3; ++k)
-          apart = std::max(apart, std::abs(l[k] - (k == n ? 1.0 : 0.0)));
+        least = std::min(std::min(least, l[0]), std::min(l[1], l[2]));
+        if (!straight) continue;
+        Lambda off = l;
+        off[n] -= 1.0;
+        apart = std::max(std::max(apart, std::abs(off[0])),
+                         std::max(std::abs(off[1]), std::abs(off[2])));
       }
       // Barycentrics not below -s: the absolute values of the three add up to at most 1 + 6 s,
       // those of the basis functions to its d-th power, and what exceeds 1 is negative and positive
@@ -87,7 +92,7 @@ ValueRanges::ValueRanges(std::shared_ptr<const Space> space, int threads)
       const double s = 8.0 * u - least;
       const int d = space_->degree(id);
       widening_[e] = least < -far_outside ? -1.0 : 0.5 * (power(1.0 + 6.0 * s, d) - 1.0);
-      exact_[e] = mesh.degree() == 1 && apart < same_corner ? 1 : 0;
+      exact_[e] = straight && apart < same_corner ? 1 : 0;
     }
   });
 }
@@ -152,7 +157,7 @@ Range ValueRanges::in_reference(const Field& field, int component, double rel_to
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Range attained{infinity, -infinity}, all = attained;  // at corners; of the coefficients
   const bool corners_tell = space_->highest_degree() <= 1;
-  std::vector<double> high(corners_tell ? 0 : elements), low(high.size());
+  Numbers high(corners_tell ? 0 : elements), low(high.size());
   const auto look = [&](auto fixed) {
     const double* c = coefficients;
     const std::size_t step = fixed() > 0 ? 1 : n;
@@ -200,35 +205,44 @@ Range ValueRanges::operator()(const Field& field, int component, double rel_tol)
   if (widening_.empty()) return in_reference(field, component, rel_tol);
   const std::size_t elements = field.mesh().element_count();
   const std::size_t n = at(field.components());
-  const double* c = field.coefficients().data() + component;
-  std::vector<double> high(elements), low(elements);
+  const double* coefficients = field.coefficients().data() + component;
+  Numbers high(elements), low(elements);
   double slack = 0.0;
   std::size_t highest = 0, lowest = 0;
-  for (std::size_t e = 0; e < elements; ++e) {
-    const ElementId id(e);
-    const auto size = at(bernstein::triangle_size(space_->degree(id)));
-    double lo = *c, hi = *c;
-    for (std::size_t i = 1; i < size; ++i) {
-      lo = std::min(lo, c[i * n]);
-      hi = std::max(hi, c[i * n]);
+  const auto look = [&](auto fixed) {
+    const double* c = coefficients;
+    const std::size_t step = fixed() > 0 ? 1 : n;
+    for (std::size_t e = 0; e < elements; ++e) {
+      const ElementId id(e);
+      const std::size_t size =
+          fixed() > 0 ? fixed() : at(bernstein::triangle_size(space_->degree(id)));
+      double lo = *c, hi = *c;
+      for (std::size_t i = 1; i < size; ++i) {
+        lo = std::min(lo, c[i * step]);
+        hi = std::max(hi, c[i * step]);
+      }
+      if (widening_[e] >= 0.0) {
+        const double wider = widening_[e] * (hi - lo);
+        slack = std::max(slack, wider);
+        lo -= wider;
+        hi += wider;
+      } else {
+        const Known known =
+            field_detail::piece_bounds(field, id, component)(field.mesh().gather(id));
+        slack = std::max(slack, known.slack);
+        lo = known.lo;
+        hi = known.hi;
+      }
+      high[e] = hi;
+      low[e] = -lo;
+      if (hi > high[highest]) highest = e;
+      if (-lo > low[lowest]) lowest = e;
+      c += size * step;
     }
-    if (widening_[e] >= 0.0) {
-      const double wider = widening_[e] * (hi - lo);
-      slack = std::max(slack, wider);
-      lo -= wider;
-      hi += wider;
-    } else {
-      const Known known = field_detail::piece_bounds(field, id, component)(field.mesh().gather(id));
-      slack = std::max(slack, known.slack);
-      lo = known.lo;
-      hi = known.hi;
-    }
-    high[e] = hi;
-    low[e] = -lo;
-    if (hi > high[highest]) highest = e;
-    if (-lo > low[lowest]) lowest = e;
-    c += size * n;
-  }
+  };
+  const int uniform = space_->uniform_degree();
+  bernstein::with_triangle_size(uniform >= 0 && n == 1 ? at(bernstein::triangle_size(uniform)) : 0,
+                                look);
   const Range known{-attained({field, component, -1.0, 0.0, 0.0}, lowest),
                     attained({field, component, 1.0, 0.0, 0.0}, highest)};
   return search_both(field, component, rel_tol, slack, known, {-low[lowest], high[highest]}, low,

@@ -7,6 +7,7 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/geometry/area_map.hpp"
+#include "bezel/geometry/jacobian_kernel.hpp"
 #include "bezel/geometry/triangle_check.hpp"
 #include "bezel/geometry/triangle_kernel.hpp"
 #include "bezel/numeric/binomial.hpp"
@@ -44,29 +45,13 @@ std::vector<double> jacobian_determinant(int g, std::span<const Vec2> control) {
   check_triangle(g, control, bernstein::max_triangle_degree);
   const RoundControl round(control);
   control = round.points();
-  using bernstein::triangle_index;
-  const int e = g - 1, d = 2 * e;
-  const auto multinomial = [](int n, int j, int k) { return binomial(n, k) * binomial(n - k, j); };
-  const auto at = [](int i) { return static_cast<std::size_t>(i); };
-  // Scaled hodographs: weight times difference.
-  std::vector<Vec2> du(at(bernstein::triangle_size(e))), dv(du.size());
-  for (int k = 0, n = 0; k <= e; ++k)
-    for (int j = 0; j + k <= e; ++j, ++n) {
-      const double weight = multinomial(e, j, k);
-      const Vec2 base = control[at(triangle_index(g, j, k))];
-      du[at(n)] = weight * (control[at(triangle_index(g, j + 1, k))] - base);
-      dv[at(n)] = weight * (control[at(triangle_index(g, j, k + 1))] - base);
-    }
-  std::vector<double> det(at(bernstein::triangle_size(d)), 0.0);
-  for (int k = 0, n = 0; k <= e; ++k)
-    for (int j = 0; j + k <= e; ++j, ++n)
-      for (int q = 0, m = 0; q <= e; ++q)
-        for (int p = 0; p + q <= e; ++p, ++m)
-          det[at(triangle_index(d, j + p, k + q))] += cross(du[at(n)], dv[at(m)]);
-  for (int k = 0, n = 0; k <= d; ++k)
-    for (int j = 0; j + k <= d; ++j, ++n)
-      det[at(n)] *= static_cast<double>(g) * g / multinomial(d, j, k);
-  return det;
+  using geometry_kernel::JacobianTable;
+  const auto by_table = [&](const JacobianTable& table) {
+    std::vector<double> room(4 * table.steps.size()), det(table.scale.size());
+    table(control.data(), room.data(), det.data());
+    return det;
+  };
+  return g <= JacobianTable::max_kept ? by_table(JacobianTable::of(g)) : by_table(JacobianTable(g));
 }
 
 InverseResult invert(int g, std::span<const Vec2> control, const Vec2& p, const Lambda& start) {
@@ -119,16 +104,25 @@ InverseResult invert(int g, std::span<const Vec2> control, const Vec2& p, const 
 
 namespace {
 
-/// C(g,i) C(g-1,j) / C(2g-1,i+j) for all degrees: meshes ask for every element.
-const std::vector<double>& side_weights(int g) {
+/// What area() needs of a degree: meshes ask for every element.
+struct SideTable {
+  std::vector<double> weight;                  // C(g,i) C(g-1,j) / C(2g-1,i+j)
+  std::array<std::vector<std::size_t>, 3> at;  // control points along each side
+};
+
+const SideTable& side_table(int g) {
   static const auto tables = [] {
-    std::array<std::vector<double>, static_cast<std::size_t>(bernstein::max_triangle_degree) + 1>
-        all;
-    for (int d = 1; d <= bernstein::max_triangle_degree; ++d)
+    std::array<SideTable, static_cast<std::size_t>(bernstein::max_triangle_degree) + 1> all;
+    for (int d = 1; d <= bernstein::max_triangle_degree; ++d) {
+      SideTable& table = all[static_cast<std::size_t>(d)];
       for (int i = 0; i <= d; ++i)
         for (int j = 0; j < d; ++j)
-          all[static_cast<std::size_t>(d)].push_back(binomial(d, i) * binomial(d - 1, j) /
-                                                     binomial(2 * d - 1, i + j));
+          table.weight.push_back(binomial(d, i) * binomial(d - 1, j) / binomial(2 * d - 1, i + j));
+      for (int side = 0; side < 3; ++side)
+        for (int m = 0; m <= d; ++m)
+          table.at[static_cast<std::size_t>(side)].push_back(
+              static_cast<std::size_t>(bernstein::triangle_side_index(d, side, m)));
+    }
     return all;
   }();
   return tables[static_cast<std::size_t>(g)];
@@ -146,16 +140,20 @@ double area(int g, std::span<const Vec2> control) {
   // so that a triangle far from the origin loses nothing; side 0 and 2 start or end there.
   const Vec2 origin = control[0];
   double sum = 0;
-  const auto at = [&](int side, int m) {
-    return control[static_cast<std::size_t>(bernstein::triangle_side_index(g, side, m))] - origin;
-  };
-  const std::vector<double>& weights = side_weights(g);
-  for (int side = 0; side < 3; ++side) {
-    const double* weight = weights.data();
-    for (int i = 0; i <= g; ++i) {
-      const Vec2 p = at(side, i);
-      for (int j = 0; j < g; ++j) sum += *weight++ * cross(p, at(side, j + 1) - at(side, j));
+  const SideTable& table = side_table(g);
+  const auto degree = static_cast<std::size_t>(g);
+  constexpr std::size_t room = static_cast<std::size_t>(bernstein::max_triangle_degree) + 1;
+  std::array<double, room> x, y;  // along a side
+  for (const std::vector<std::size_t>& at : table.at) {
+    for (std::size_t i = 0; i <= degree; ++i) {
+      const Vec2 p = control[at[i]] - origin;
+      x[i] = p.x();
+      y[i] = p.y();
     }
+    const double* weight = table.weight.data();
+    for (std::size_t i = 0; i <= degree; ++i)
+      for (std::size_t j = 0; j < degree; ++j)
+        sum += *weight++ * (x[i] * (y[j + 1] - y[j]) - y[i] * (x[j + 1] - x[j]));
   }
   return 0.25 * sum;  // g (from the derivative) / (2g) / 2
 }

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "bezel/geometry/area_map.hpp"
+#include "bezel/geometry/jacobian_kernel.hpp"
 #include "bezel/geometry/triangle.hpp"
 #include "bezel/geometry/triangle_check.hpp"
 #include "bezel/geometry/triangle_kernel.hpp"
@@ -13,6 +15,7 @@
 namespace bezel {
 namespace {
 
+using geometry_kernel::JacobianTable;
 using Corners = std::array<Lambda, 3>;
 constexpr Corners whole{Lambda{1, 0, 0}, Lambda{0, 1, 0}, Lambda{0, 0, 1}};
 constexpr int max_depth = 40;  // bisections
@@ -23,6 +26,17 @@ double cross_accurate(const Vec2& a, const Vec2& b) {
   const double w = a.y() * b.x();
   const double e = std::fma(-a.y(), b.x(), w);
   return std::fma(a.x(), b.y(), -w) + e;
+}
+
+double widest_step(const JacobianTable& table, std::span<const Vec2> control) {
+  double widest = 0;
+  for (const JacobianTable::Step& step : table.steps)
+    for (const std::int32_t i : {step.along_u, step.along_v}) {
+      const Vec2 e =
+          control[static_cast<std::size_t>(i)] - control[static_cast<std::size_t>(step.base)];
+      widest = std::max({widest, std::fabs(e.x()), std::fabs(e.y())});
+    }
+  return widest;
 }
 
 }  // namespace
@@ -39,32 +53,48 @@ ValidityResult check_validity(int g, std::span<const Vec2> control) {
   control = round.points();
   const int d = 2 * (g - 1);
   const auto n = static_cast<std::size_t>(bernstein::triangle_size(d));
-  const std::vector<double> det = jacobian_determinant(g, control);
+  const bool has_table = g <= JacobianTable::max_kept;
+  std::array<double, JacobianTable::max_size> few;
+  std::vector<double> many;
+  double at_most = std::numeric_limits<double>::infinity();  // of the hodograph differences
+  if (has_table) {
+    const JacobianTable& table = JacobianTable::of(g);
+    std::array<double, JacobianTable::max_room> room;
+    table(control.data(), room.data(), few.data());
+    // They are there times weights of at least 1.
+    at_most = 0;
+    for (std::size_t i = 0; i < 4 * table.steps.size(); ++i)
+      at_most = std::max(at_most, std::fabs(room[i]));
+  } else {
+    many = jacobian_determinant(g, control);
+  }
+  const std::span<const double> det(has_table ? few.data() : many.data(), n);
   // Rounding. Hodograph differences carry u |coordinate|, products and the sum of at most size(g-1)
   // positive-weight terms size(g-1) + 4 roundings of the largest product; bisection is a convex
-  // combination and adds at most d u max|det| per level. `size` is the largest coordinate
-  // difference, `far` the largest coordinate.
+  // combination and adds at most d u max|det| per level.
   const double u = 0x1p-53;
-  double size = 0, far = 0;
-  for (const Vec2& c : control) {
-    size = std::max({size, std::fabs(c.x() - control[0].x()), std::fabs(c.y() - control[0].y())});
-    far = std::max({far, std::fabs(c.x()), std::fabs(c.y())});
-  }
-  double largest = 0;
-  for (const double c : det) largest = std::max(largest, std::fabs(c));
-  double widest = 0;  // largest hodograph difference
-  for (int k = 0; k < g; ++k)
-    for (int j = 0; j + k < g; ++j) {
-      const Vec2& base = control[static_cast<std::size_t>(bernstein::triangle_index(g, j, k))];
-      for (const int i :
-           {bernstein::triangle_index(g, j + 1, k), bernstein::triangle_index(g, j, k + 1)}) {
-        const Vec2 e = control[static_cast<std::size_t>(i)] - base;
-        widest = std::max({widest, std::fabs(e.x()), std::fabs(e.y())});
+  const double terms = bernstein::triangle_size(g - 1) + 8;
+  const double unit_error = 2 * u * g * g * terms;  // of differences of 1
+
+  ValidityResult result{Validity::valid, whole[0], det[0]};
+  // The three corner coefficients are values of the determinant.
+  const auto note_corners = [&](std::span<const double> c, const Corners& corners) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const double value = c[static_cast<std::size_t>(bernstein::triangle_corner(d, corner))];
+      if (value < result.det) {
+        result.det = value;
+        result.where = corners[static_cast<std::size_t>(corner)];
       }
     }
-  const double terms = bernstein::triangle_size(g - 1) + 8;
-  const double base_error = 2 * u * g * g * terms * widest * widest;
-  static_cast<void>(far);
+  };
+  if (*std::min_element(det.begin(), det.end()) > unit_error * at_most * at_most) {
+    note_corners(det, whole);  // nearly all elements
+    return result;
+  }
+  const double widest = widest_step(has_table ? JacobianTable::of(g) : JacobianTable(g), control);
+  const double base_error = unit_error * widest * widest;
+  double largest = 0;
+  for (const double c : det) largest = std::max(largest, std::fabs(c));
 
   struct Piece {
     std::vector<double> c;
@@ -72,21 +102,13 @@ ValidityResult check_validity(int g, std::span<const Vec2> control) {
     int depth;
   };
   std::vector<Piece> stack;
-  stack.push_back({det, whole, 0});
-  ValidityResult result{Validity::valid, whole[0], det[0]};
+  stack.push_back({{det.begin(), det.end()}, whole, 0});
   int pieces = 0;
   while (!stack.empty()) {
     Piece piece = std::move(stack.back());
     stack.pop_back();
     const double error = base_error + u * d * piece.depth * largest;
-    // The three corner coefficients are values of the determinant.
-    for (int corner = 0; corner < 3; ++corner) {
-      const double value = piece.c[static_cast<std::size_t>(bernstein::triangle_corner(d, corner))];
-      if (value < result.det) {
-        result.det = value;
-        result.where = piece.corner[static_cast<std::size_t>(corner)];
-      }
-    }
+    note_corners(piece.c, piece.corner);
     if (result.det < -error) {
       result.status = Validity::inverted;
       return result;

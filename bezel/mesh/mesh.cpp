@@ -175,15 +175,6 @@ Box<dim> SimplexMesh<dim>::box() const {
   return box;
 }
 
-template <int dim>
-std::array<SideEdge, SimplexMesh<dim>::edges_per_element> SimplexMesh<dim>::edges(
-    ElementId e) const {
-  std::array<SideEdge, edges_per_element> sides;
-  for (std::size_t s = 0; s < edges_per_element; ++s)
-    sides[s] = element_edges_[e.index() * edges_per_element + s];
-  return sides;
-}
-
 template class SimplexMesh<2>;
 
 }  // namespace bezel

@@ -83,7 +83,12 @@ class SimplexMesh {
   }
   void gather_edge(EdgeId e, std::span<Vec<dim>> out) const;
   /// The edges of the element's sides 0, 1, 2 (index.hpp).
-  std::array<SideEdge, edges_per_element> edges(ElementId e) const;
+  std::array<SideEdge, edges_per_element> edges(ElementId e) const {
+    std::array<SideEdge, edges_per_element> sides;
+    for (std::size_t s = 0; s < edges_per_element; ++s)
+      sides[s] = element_edges_[e.index() * edges_per_element + s];
+    return sides;
+  }
   /// The elements along an edge, in ascending order: one on the boundary, two inside; three or more
   /// where the mesh is no surface (elements that overlap or branch). Such meshes are accepted: the
   /// list names all of them.

@@ -48,12 +48,18 @@ std::vector<Column> columns_of(std::span<const Field* const> fields) {
 /// other.
 void scale_columns(std::span<const Column> columns, std::size_t begin,
                    std::span<const double> factors, double* to) {
-  const std::size_t size = factors.size();
-  for (const Column& column : columns) {
-    const double* from = column.first + begin * column.stride;
-    for (std::size_t n = 0; n < size; ++n) to[n] = from[n * column.stride] * factors[n];
-    to += size;
-  }
+  bernstein::with_triangle_size(factors.size(), [&](auto fixed) {
+    const std::size_t size = fixed() > 0 ? fixed() : factors.size();
+    for (const Column& column : columns) {
+      const double* from = column.first + begin * column.stride;
+      if (column.stride == 1) {
+        for (std::size_t n = 0; n < size; ++n) to[n] = from[n] * factors[n];
+      } else {
+        for (std::size_t n = 0; n < size; ++n) to[n] = from[n * column.stride] * factors[n];
+      }
+      to += size;
+    }
+  });
 }
 
 /// Each of nc rows of `fixed` (0: of `size`) numbers times the matrix, as columns.
@@ -100,11 +106,17 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
   donor_mass = field_detail::element_integrals(fields, donor_integrals, threads);
   scaled.resize(donor_space->coefficient_count() * nc);
   const std::vector<Column> columns = columns_of(fields);
-  for_blocks(donor.element_count(), threads, [&](std::size_t e) {
-    const std::size_t begin = donor_space->offset(ElementId(e));
-    scale_columns(columns, begin, multinomials(donor_space->degree(ElementId(e))),
-                  scaled.data() + begin * nc);
-  });
+  if (nc == 1 && donor_degree.highest <= 1) {
+    // The factors are 1.
+    const std::span<const double> all = fields.front()->coefficients();
+    std::copy(all.begin(), all.end(), scaled.begin());
+  } else {
+    for_blocks(donor.element_count(), threads, [&](std::size_t e) {
+      const std::size_t begin = donor_space->offset(ElementId(e));
+      scale_columns(columns, begin, multinomials(donor_space->degree(ElementId(e))),
+                    scaled.data() + begin * nc);
+    });
+  }
   out.resize(target_space->coefficient_count() * nc);
   make_powers(donor.element_count(), threads);
 }
@@ -132,16 +144,28 @@ void Group::make_powers(std::size_t elements, int threads) {
   if (donor_mapped || target_mapped) return;
   powers.resize(scaled.size() + batch_padding);
   std::fill(powers.end() - batch_padding, powers.end(), 0.0);
-  for_blocks(elements, threads, [&](std::size_t e) {
-    const int degree = donor_space->degree(ElementId(e));
-    if (degree > max_moment_degree) return;
-    const std::size_t begin = donor_space->offset(ElementId(e)) * nc;
+  const auto of_elements = [&](std::size_t from, std::size_t to, int degree) {
     const auto size = static_cast<std::size_t>(bernstein::triangle_size(degree));
+    const std::size_t begin = donor_space->offset(ElementId(from)) * nc;
     bernstein::with_triangle_size(size, [&](auto fixed) {
-      multiply_rows<fixed()>(size, nc, power_matrix(degree).data(), scaled.data() + begin,
-                             powers.data() + begin);
+      const double* const matrix = power_matrix(degree).data();
+      const double* row = scaled.data() + begin;
+      double* to_row = powers.data() + begin;
+      for (std::size_t e = from; e < to; ++e, row += size * nc, to_row += size * nc)
+        multiply_rows<fixed()>(size, nc, matrix, row, to_row);
     });
-  });
+  };
+  const int uniform = donor_degree.uniform;
+  parallel_for((elements + block - 1) / block,
+               [&](std::size_t b) {
+                 const std::size_t begin = b * block, end = std::min(elements, begin + block);
+                 const std::size_t step = uniform >= 0 ? end - begin : 1;
+                 for (std::size_t e = begin; e < end; e += step) {
+                   const int degree = donor_space->degree(ElementId(e));
+                   if (degree <= max_moment_degree) of_elements(e, e + step, degree);
+                 }
+               },
+               threads);
 }
 
 Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
@@ -173,30 +197,28 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
 }
 
 void Group::make_frames(const OverlayMesh& donor, const OverlayMesh& target, int threads) {
-  if (!donor_mapped) {
-    donor_frame.resize(donor.element_count());
-    for_blocks(donor_frame.size(), threads, [&](std::size_t e) {
-      donor_frame[e] = donor_space->basis() == Basis::physical
-                           ? donor_space->frame(ElementId(e))
-                           : affine_frame(donor.corners(static_cast<std::int32_t>(e)));
+  // Which frame an element gets depends on nothing but the element: so parts of meshes give the
+  // bits of the whole.
+  const auto of_elements = [&](const OverlayMesh& mesh, const Space& space,
+                               std::vector<Frame>& made) -> std::span<const Frame> {
+    if (space.basis() == Basis::physical && (mesh.degree > 1 || space.has_own_frames()))
+      return space.frames();
+    made.resize(mesh.element_count());
+    for_blocks(made.size(), threads, [&](std::size_t e) {
+      made[e] = space.is_own_frame(ElementId(e))
+                    ? space.frame(ElementId(e))
+                    : affine_frame(mesh.corners(static_cast<std::int32_t>(e)));
     });
+    return made;
+  };
+  // A donor's polynomials stay on their frames.
+  if (!donor_mapped) {
+    donor_frame = donor_space->basis() == Basis::physical
+                      ? donor_space->frames()
+                      : of_elements(donor, *donor_space, made_donor_frame_);
   }
-  if (target_mapped) return;
-  // The target's polynomials may stay on the triangle they are computed on when the space's frame
-  // is that triangle.
-  const bool physical = target_space->basis() == Basis::physical;
-  if (physical && target.degree == 1) other_frame.resize(target.element_count());
-  target_frame.resize(target.element_count());
-  for_blocks(target_frame.size(), threads, [&](std::size_t e) {
-    const auto t = static_cast<std::int32_t>(e);
-    target_frame[e] = !physical || target.degree == 1 ? affine_frame(target.corners(t))
-                                                      : target_space->frame(ElementId(e));
-    if (!other_frame.empty()) {
-      const bool own =
-          field_detail::is_own_frame(target_space->frame(ElementId(e)), target.corners(t));
-      other_frame[e] = own ? 0 : 1;
-    }
-  });
+  // A target's may stay on the triangle they are computed on when the space's frame is that one.
+  if (!target_mapped) target_frame = of_elements(target, *target_space, made_target_frame_);
 }
 
 std::span<const double> Group::donor_scaled(std::int32_t e) const {
@@ -260,8 +282,12 @@ std::vector<std::vector<double>> take_fields(Group& g, std::span<const std::size
           for (std::size_t m = begin; m < end; ++m) {
             const std::size_t own = components[m];
             const double* from = g.out.data() + r * all + first[m];
-            for (std::size_t n = 0; n < count; ++n)
-              for (std::size_t c = 0; c < own; ++c) buffer[n * own + c] = from[n * all + c];
+            if (own == 1) {
+              for (std::size_t n = 0; n < count; ++n) buffer[n] = from[n * all];
+            } else {
+              for (std::size_t n = 0; n < count; ++n)
+                for (std::size_t c = 0; c < own; ++c) buffer[n * own + c] = from[n * all + c];
+            }
             parts[m].insert(parts[m].end(), buffer.data(), buffer.data() + count * own);
           }
         }

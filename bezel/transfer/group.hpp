@@ -24,6 +24,8 @@ struct DonorDegree {
 
 /// The components of all donor fields that share a donor space and go to the same target space.
 struct Group {
+  Group(Group&&) noexcept = default;
+  Group& operator=(Group&&) noexcept = default;
   Group(const OverlayMesh& donor, const OverlayMesh& target, std::span<const Field* const> fields,
         std::shared_ptr<const Space> target_space, int threads);
   /// The donor's basis functions as components: component c is basis function c of every element
@@ -44,17 +46,15 @@ struct Group {
   int components = 0;
   DonorDegree donor_degree;          ///< of the whole donor, on a part too
   bool donor_mapped, target_mapped;  ///< polynomial in reference coordinates of a curved element
-  std::vector<Frame>
-      donor_frame;  ///< affine triangles of the donor's polynomials that are not mapped
+  /// Affine triangles of the donor's polynomials that are not mapped.
+  std::span<const Frame> donor_frame;
   /// Affine triangles on which the target's polynomials are computed: straight elements themselves,
   /// else the space's own frames.
-  std::vector<Frame> target_frame;
-  std::vector<std::uint8_t> other_frame;  ///< whether the space's own frame is another one, by
-                                          ///< target element; empty when the space has none
-  Numbers scaled;                         ///< donor coefficients times multinomials, per element
-                                          ///< [component][n]; of basis functions per degree
-  std::vector<double> donor_integrals;    ///< of the donor's basis functions; not of basis groups
-  std::vector<double> donor_mass;         ///< per element [component]
+  std::span<const Frame> target_frame;
+  Numbers scaled;                       ///< donor coefficients times multinomials, per element
+                                        ///< [component][n]; of basis functions per degree
+  std::vector<double> donor_integrals;  ///< of the donor's basis functions; not of basis groups
+  std::vector<double> donor_mass;       ///< per element [component]
   /// Coefficients of the monomials in the barycentrics less 1/3, per element [n][component]: of
   /// donors that are not mapped and have at most max_moment_degree.
   Numbers powers;
@@ -72,14 +72,17 @@ struct Group {
   std::span<double> target_out(std::int32_t e);
   /// Frees the donor's coefficients: nothing can be integrated any more.
   void drop_donor();
+  /// Whether the space's own frame of a target element is another one than target_frame.
   bool in_other_frame(std::int32_t t) const {
-    return !other_frame.empty() && other_frame[static_cast<std::size_t>(t)] != 0;
+    return !made_target_frame_.empty() && target_space->basis() == Basis::physical &&
+           !target_space->is_own_frame(ElementId(t));
   }
 
  private:
   void make_powers(std::size_t elements, int threads);
   void make_frames(const OverlayMesh& donor, const OverlayMesh& target, int threads);
-  std::vector<std::size_t> scaled_offset_;  // per degree, for basis functions
+  std::vector<std::size_t> scaled_offset_;                   // per degree, for basis functions
+  std::vector<Frame> made_donor_frame_, made_target_frame_;  // those that no space has
 };
 
 /// The coefficients of a group's fields, one field after the other; taken out of the group.

@@ -14,8 +14,34 @@ namespace bezel::detail {
 namespace {
 
 constexpr std::size_t block = 1024;
+/// Twice a straight triangle's area over the squares of two sides, above which its rounding is
+/// below 8 u of it.
+constexpr double well_shaped = 0.1;
 /// Steps from element to element before a search goes on in the tree.
 constexpr int longest_walk = 64;
+/// Where steps are short: across the whole mesh if need be.
+std::size_t longest_way(const OverlayMesh& mesh) {
+  return static_cast<std::size_t>(longest_walk) + mesh.element_count() / 64;
+}
+
+/// Where a walk over the triangles of the corners ends: in the one around p, or at the boundary.
+std::int32_t walk_towards(const OverlayMesh& mesh, const Vec2& p, std::int32_t from) {
+  std::int32_t at = from;
+  const std::size_t longest = longest_way(mesh);
+  for (std::size_t step = 0; step < longest; ++step) {
+    const std::array<Vec2, 3> c = mesh.corners(at);
+    const std::array<double, 3> left = {cross(c[1] - c[0], p - c[0]), cross(c[2] - c[1], p - c[1]),
+                                        cross(c[0] - c[2], p - c[2])};
+    const auto least = std::min_element(left.begin(), left.end());
+    if (*least >= 0.0) break;
+    const auto side = static_cast<std::size_t>(least - left.begin());
+    const std::int32_t next =
+        mesh.across(at, mesh.element_edges[static_cast<std::size_t>(at)][side].edge.value);
+    if (next == exterior) break;
+    at = next;
+  }
+  return at;
+}
 
 }  // namespace
 
@@ -80,6 +106,12 @@ void OverlayMesh::lay_out_elements(const std::string& what, int threads) {
     }
     element_box[e] = around;
     element_diameter[e] = around.diameter();
+    if (degree == 1) {
+      const Vec2 a = control[1] - control[0], b = control[2] - control[0];
+      const double det = cross(a, b);
+      element_area[e] = 0.5 * det;
+      if (det > well_shaped * (dot(a, a) + dot(b, b))) return;
+    }
     const ValidityResult validity = check_validity(degree, control);
     if (validity.status == Validity::inverted) {
       throw InputError({"", 0, "triangle", static_cast<std::int64_t>(e)},
@@ -173,10 +205,12 @@ void FrontSearch::collect_edges_at_vertices() {
 }
 
 std::int32_t FrontSearch::containing(const Vec2& p, std::int32_t start, Memory& memory) const {
+  // Any element is a start: the way from it costs less than a tree over all of them.
+  if (start == exterior && mesh_.element_count() > 0) start = 0;
+  const std::size_t longest = longest_way(mesh_);
   if (!straight_.empty()) {
     // Towards the side that p is farthest beyond; across the whole mesh if need be, for these steps
     // are short.
-    const std::size_t longest = static_cast<std::size_t>(longest_walk) + straight_.size() / 64;
     for (std::size_t step = 0; start >= 0 && step < longest; ++step) {
       const StraightPlace place = place_in(straight_[static_cast<std::size_t>(start)], p);
       if (place.inside) return place.clear ? start : exterior;
@@ -190,8 +224,10 @@ std::int32_t FrontSearch::containing(const Vec2& p, std::int32_t start, Memory& 
   };
   std::int32_t at = start;
   std::array<double, 3> lambda{};
-  for (int step = 0; at != exterior && step < longest_walk; ++step) {
+  int inverted = 0;
+  for (std::size_t step = 0; at != exterior && step < longest && inverted < longest_walk; ++step) {
     const bool known = margin_of(at, lambda);
+    inverted += known ? 1 : 0;
     // Far from a curved element the triangle of its corners shows the way.
     if (!known) lambda = affine_frame(mesh_.corners(at)).lambda(p);
     const auto smallest = std::min_element(lambda.begin(), lambda.end());
@@ -216,15 +252,17 @@ void FrontSearch::query(const Box2& box, std::span<const std::int32_t> near, Mem
   // The walk must start in an element that truly meets the box (a corner in it, or around its
   // centre): from one whose bounding box only overlaps it, the elements in the box need not be
   // reachable through elements near the box.
-  std::int32_t seed = exterior;
-  for (const std::int32_t e : near) {
-    if (!boxes[static_cast<std::size_t>(e)].overlaps(box)) continue;
+  const auto meets = [&](std::int32_t e) {
+    if (!boxes[static_cast<std::size_t>(e)].overlaps(box)) return false;
     const auto corners = mesh_.corners(e);
-    if (box.contains(corners[0]) || box.contains(corners[1]) || box.contains(corners[2]) ||
-        inside_margin(mesh_, e, box.centre()) >= 0.0) {
-      seed = e;
-      break;
-    }
+    return box.contains(corners[0]) || box.contains(corners[1]) || box.contains(corners[2]) ||
+           inside_margin(mesh_, e, box.centre()) >= 0.0;
+  };
+  const auto found = std::find_if(near.begin(), near.end(), meets);
+  std::int32_t seed = found != near.end() ? *found : exterior;
+  if (seed == exterior && !near.empty()) {
+    const std::int32_t e = walk_towards(mesh_, box.centre(), near.front());
+    if (meets(e)) seed = e;
   }
   out.clear();
   bool complete = seed != exterior;
@@ -262,6 +300,10 @@ void FrontSearch::query(const Box2& box, std::span<const std::int32_t> near, Mem
     tree().query(box, out);
   }
   std::sort(out.begin(), out.end());
+}
+
+std::int32_t FrontSearch::towards(const Vec2& p) const {
+  return mesh_.element_count() > 0 ? walk_towards(mesh_, p, 0) : exterior;
 }
 
 std::int32_t FrontSearch::nearest(const Vec2& p) const {

@@ -113,6 +113,9 @@ class FrontSearch {
   /// walk. The answer does not depend on them.
   void query(const Box2& box, std::span<const std::int32_t> near, Memory& memory,
              std::vector<std::int32_t>& out) const;
+  /// Where a walk towards p ends, in the element around it unless p or the way to it lies outside:
+  /// one to try first in query(). Exterior when there are no elements.
+  std::int32_t towards(const Vec2& p) const;
   /// The element nearest to p by the distance of its corners and centre; for extending fields.
   std::int32_t nearest(const Vec2& p) const;
   /// The element that holds p well inside; exterior when there is none, also where p is too near to

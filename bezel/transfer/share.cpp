@@ -87,7 +87,7 @@ std::vector<Frame> frames_in(const AreaMap& map, const Space& space, const Overl
     std::array<Vec2, 3> corners = mesh.corners(e);
     if (map.identity) {
       frames.push_back(frame);
-    } else if (mesh.degree == 1 && field_detail::is_own_frame(frame, corners)) {
+    } else if (mesh.degree == 1 && space.is_own_frame(ElementId(e))) {
       std::transform(corners.begin(), corners.end(), corners.begin(), map);
       frames.push_back(affine_frame(corners));
     } else {

@@ -104,6 +104,7 @@ std::vector<std::uint8_t> rim_donors(const OverlayMesh& donor, const OverlayMesh
     box.lo -= Vec2{{room, room}};
     box.hi += Vec2{{room, room}};
     near.swap(found);
+    if (near.empty()) near.push_back(search.towards(box.centre()));
     search.query(box, near, memory, found);
     for (const std::int32_t d : found) rim[static_cast<std::size_t>(d)] = 1;
   }
@@ -120,7 +121,11 @@ std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayM
   const std::size_t chunks = (elements.size() + chunk_size - 1) / chunk_size;
   std::vector<ChunkResult> results(chunks);
   std::vector<std::uint8_t> rim(part_rim.begin(), part_rim.end());
-  if (donor.numbers.empty()) rim = rim_donors(donor, target, search);
+  if (donor.numbers.empty()) {
+    // Without fields there are no masses to keep.
+    rim = components > 0 ? rim_donors(donor, target, search)
+                         : std::vector<std::uint8_t>(donor.element_count(), 0);
+  }
   const bool with_blocks = static_cast<bool>(visit);
   WorkerPool pool([&] {
     return std::make_unique<Worker>(donor, target, search, groups, options, rim, with_blocks);

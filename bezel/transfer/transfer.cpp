@@ -71,7 +71,9 @@ Plan make_plan(std::span<const Field> donors,
     }
     if (continuous && !continuous_space)
       continuous_space = Space::continuous(target_mesh, keys[k].degree);
-    if (!space) space = Space::discontinuous(target_mesh, keys[k].degree, keys[k].basis);
+    if (!space) {
+      space = Space::discontinuous(target_mesh, keys[k].degree, keys[k].basis, options.threads);
+    }
     std::vector<const Field*> fields;
     for (const std::size_t i : plan.members[k]) fields.push_back(&donors[i]);
     plan.groups.emplace_back(donor, target, fields, std::move(space), options.threads);

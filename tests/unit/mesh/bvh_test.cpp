@@ -90,6 +90,23 @@ TEST(Bvh, ManyEqualAndNestedBoxesDoNotDeepenTheTree) {
     EXPECT_EQ(found(tree, query), brute_force(boxes, query));
 }
 
+TEST(Bvh, BoxesFarFromTheOthersLeaveTheTreeGood) {
+  // One box so far away that all others lie in one place of the space-filling curve.
+  std::vector<Box2> boxes = random_boxes(3000, 21, 0.02);
+  boxes[1500] = box(1e15, 1e15, 1e15, 1e15);
+  const Bvh tree(boxes);
+  for (const Box2& query : random_boxes(60, 22, 0.2))
+    EXPECT_EQ(found(tree, query), brute_force(boxes, query));
+  std::int64_t asked = 0;
+  for (const Box2& b : random_boxes(100, 23, 0.0)) {
+    tree.nearest(b.lo, [&](std::int32_t i) {
+      ++asked;
+      return distance(boxes[static_cast<std::size_t>(i)], b.lo);
+    });
+  }
+  EXPECT_LT(asked, 100 * 60);
+}
+
 TEST(Bvh, EmptyAndInfiniteBoxes) {
   std::vector<Box2> boxes = random_boxes(50, 3, 0.1);
   boxes[7] = Box2();

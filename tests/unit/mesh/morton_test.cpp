@@ -44,5 +44,18 @@ TEST(MortonOrder, FollowsTheCurve) {
   }
 }
 
+// All but a few points in one place of the upper half of the bits.
+TEST(MortonOrder, SortsPointsThatAreFarCloserThanTheSquareIsWide) {
+  RandomStream random("morton cluster", 1);
+  std::vector<Vec2> points{{0.0, 0.0}, {1.0, 1.0}};
+  for (int i = 0; i < 4000; ++i)
+    points.push_back({0.25 + 0x1p-26 * random.uniform(), 0.5 + 0x1p-26 * random.uniform()});
+  const std::vector<MortonPlace> places = morton_places(points);
+  for (std::size_t k = 1; k < places.size(); ++k) {
+    EXPECT_TRUE(places[k - 1].key < places[k].key ||
+                (places[k - 1].key == places[k].key && places[k - 1].number < places[k].number));
+  }
+}
+
 }  // namespace
 }  // namespace bezel

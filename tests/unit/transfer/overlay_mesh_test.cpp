@@ -58,6 +58,48 @@ TEST(FrontSearch, NearestIsTheElementThatHoldsThePointOrTheClosest) {
   EXPECT_EQ(mesh.element_box[static_cast<std::size_t>(right)].hi[0], 1.0);
 }
 
+TEST(FrontSearch, AWalkEndsAroundThePointItGoesTo) {
+  const OverlayMesh mesh(test::grid_mesh(40, 1, 1.0, test::turn(0.3, 1.0)), "donor", 1);
+  const FrontSearch search(mesh);
+  FrontSearch::Memory memory;
+  RandomStream random("walk towards", 1);
+  for (int i = 0; i < 200; ++i) {
+    const Vec2 p{{random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6)}};
+    const std::int32_t e = search.towards(p);
+    EXPECT_GE(inside_margin(mesh, e, p), -1e-12);
+    if (inside_margin(mesh, e, p) < 1e-7) continue;
+    EXPECT_EQ(search.containing(p, exterior, memory), e);
+    EXPECT_EQ(
+        search.containing(p, static_cast<std::int32_t>(random.below(mesh.element_count())), memory),
+        e);
+  }
+  EXPECT_NE(search.towards({{5.0, 5.0}}), exterior);
+}
+
+// Across the opening of a ring, and where a walk comes to its inner boundary.
+TEST(FrontSearch, TheElementAroundAPointDoesNotDependOnTheStart) {
+  GenerateOptions options;
+  options.degree = 3;
+  options.size = 0.15;
+  const OverlayMesh mesh(std::make_shared<const TriangleMesh>(generate_annulus(0.5, 1.0, options)),
+                         "donor", 1);
+  const FrontSearch search(mesh);
+  FrontSearch::Memory memory;
+  RandomStream random("walk across a ring", 1);
+  for (int i = 0; i < 500; ++i) {
+    const Vec2 p{{random.uniform(-1.1, 1.1), random.uniform(-1.1, 1.1)}};
+    std::int32_t expected = exterior;
+    for (std::size_t e = 0; e < mesh.element_count(); ++e) {
+      if (inside_margin(mesh, static_cast<std::int32_t>(e), p) > clear_of_edges)
+        expected = static_cast<std::int32_t>(e);
+    }
+    EXPECT_EQ(search.containing(p, exterior, memory), expected);
+    EXPECT_EQ(
+        search.containing(p, static_cast<std::int32_t>(random.below(mesh.element_count())), memory),
+        expected);
+  }
+}
+
 TEST(OverlayMesh, SpatialOrderIsAPermutation) {
   const OverlayMesh mesh(test::grid_mesh(9, 1, 1.0, test::same_place), "donor", 1);
   auto order = mesh.spatial_order();
