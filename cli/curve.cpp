@@ -29,7 +29,7 @@ struct CurveCommand {
   CurveDrawOptions draw{800, false};
 };
 
-constexpr std::array<std::pair<const char*, CurveMethod>, 8> methods = {
+constexpr std::array<std::pair<const char*, CurveMethod>, 8> method_words = {
     {{"standard", CurveMethod::standard},
      {"chord", CurveMethod::chord},
      {"arclength", CurveMethod::arc_length},
@@ -40,7 +40,7 @@ constexpr std::array<std::pair<const char*, CurveMethod>, 8> methods = {
      {"best", CurveMethod::best}}};
 
 CurveMethod method_of(const std::string& word) {
-  return std::find_if(methods.begin(), methods.end(),
+  return std::find_if(method_words.begin(), method_words.end(),
                       [&](const auto& m) { return word == m.first; })
       ->second;
 }
@@ -330,7 +330,7 @@ void add_curve(CLI::App& app, Context& context) {
       ->type_name("N")
       ->capture_default_str();
   std::vector<std::string> words;
-  for (const auto& m : methods) words.emplace_back(m.first);
+  for (const auto& m : method_words) words.emplace_back(m.first);
   command->add_option("--method", o.method, "How the nodes are placed")
       ->check(CLI::IsMember(words))
       ->type_name("METHOD")

@@ -6,7 +6,7 @@ namespace bezel::cli {
 namespace {
 
 // clang-format off
-constexpr std::array<CurveReference, 5> table = {{
+constexpr std::array<CurveReference, 5> best_results = {{
     {{{
     // standard
     {{3.43e-2, 2.77e-2, 4.46e-3, 4.1e-3, 8.39e-4, 8.07e-4, 1.86e-4, 1.82e-4, 4.53e-5, 4.46e-5,
@@ -196,7 +196,7 @@ constexpr std::array<CurveReference, 5> table = {{
 }  // namespace
 
 const CurveReference& curve_reference(std::size_t case_number) {
-  return table.at(case_number);
+  return best_results.at(case_number);
 }
 
 }  // namespace bezel::cli

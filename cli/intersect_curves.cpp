@@ -14,9 +14,9 @@
 namespace bezel::cli {
 namespace {
 
-const std::vector<std::string> header = {"number", "what", "s",         "t",
-                                         "x",      "y",    "condition", "remarks"};
-constexpr const char* units =
+const std::vector<std::string> curve_columns = {"number", "what", "s",         "t",
+                                                "x",      "y",    "condition", "remarks"};
+constexpr const char* curve_units =
     "s, t: parameters of the first and second curve, 0 to 1; x, y: in the units of the input\n\n";
 
 /// Lists, and rows of a table with numbers, as the picture has them.
@@ -81,7 +81,9 @@ class Writer {
       row("unresolved", interval(u.s_lo, u.s_hi), interval(u.t_lo, u.t_hi), {}, "", u.reason);
   }
 
-  std::string table() const { return rows_.empty() ? std::string() : aligned(header, rows_); }
+  std::string table() const {
+    return rows_.empty() ? std::string() : aligned(curve_columns, rows_);
+  }
 
  private:
   Json number(double x) const { return number_json(x, hex_); }
@@ -126,7 +128,7 @@ void report_self(const Shape& shape, const ReportOptions& options, IntersectRepo
   for (const Cusp& cusp : found.cusps) writer.add(curve, cusp);
   writer.add(curve, found.pairs);
   const std::string table = writer.table();
-  out.text = fmt::format("{}{} with itself: {}{}\n{}", table.empty() ? "" : units, shape.name,
+  out.text = fmt::format("{}{} with itself: {}{}\n{}", table.empty() ? "" : curve_units, shape.name,
                          counts(found.pairs, found.cusps.size()),
                          found.closed ? "; it ends where it begins" : "", table);
   out.unresolved = found.pairs.unresolved.size();
@@ -167,7 +169,7 @@ IntersectReport report_curves(const Shapes& input, const ReportOptions& options)
     out.unresolved += found[i].unresolved.size();
     add_intersections(out.picture, a, found[i], number);
   }
-  if (any) out.text = units + out.text;
+  if (any) out.text = curve_units + out.text;
   return out;
 }
 

@@ -15,9 +15,9 @@
 namespace bezel::cli {
 namespace {
 
-const std::vector<std::string> header = {"polygon", "vertex",   "x",    "y",
-                                         "of",      "triangle", "side", "s"};
-constexpr const char* units =
+const std::vector<std::string> polygon_columns = {"polygon", "vertex",   "x",    "y",
+                                                  "of",      "triangle", "side", "s"};
+constexpr const char* polygon_units =
     "s: parameters of the sides, 0 to 1; x, y: in the units of the input; areas: in their "
     "squares\n\n";
 
@@ -136,8 +136,8 @@ std::string sentence(const TriangleIntersections& found, const std::string& a,
 }
 
 /// One row for each edge, with the vertex where it begins; vertices have the picture's numbers.
-std::string table(const std::vector<CurvedPolygon>& polygons, const std::string& a,
-                  const std::string& b, bool hex, int next) {
+std::string polygon_table(const std::vector<CurvedPolygon>& polygons, const std::string& a,
+                          const std::string& b, bool hex, int next) {
   std::vector<std::vector<std::string>> rows;
   for (std::size_t k = 0; k < polygons.size(); ++k) {
     const CurvedPolygon& polygon = polygons[k];
@@ -150,7 +150,7 @@ std::string table(const std::vector<CurvedPolygon>& polygons, const std::string&
                       fmt::format("{} to {}", exact_text(edge.s0, hex), exact_text(edge.s1, hex))});
     }
   }
-  return rows.empty() ? std::string() : aligned(header, rows);
+  return rows.empty() ? std::string() : aligned(polygon_columns, rows);
 }
 
 void check_shapes(const Shapes& input, const std::string& file) {
@@ -190,7 +190,7 @@ IntersectReport report(const Shapes& input, const ReportOptions& options, const 
     result.update(to_json(found[i], options.hex));
     out.results.push_back(std::move(result));
     const std::vector<CurvedPolygon>& parts = regions(found[i]);
-    const std::string rows = table(parts, a, b, options.hex, next);
+    const std::string rows = polygon_table(parts, a, b, options.hex, next);
     any = any || !parts.empty();
     out.text +=
         fmt::format("{}{}: {}\n{}", i > 0 ? "\n" : "",
@@ -203,7 +203,7 @@ IntersectReport report(const Shapes& input, const ReportOptions& options, const 
           {MarkKind::unresolved, found[i].box.centre(), std::to_string(next++)});
     }
   }
-  if (any) out.text = units + out.text;
+  if (any) out.text = polygon_units + out.text;
   return out;
 }
 

@@ -11,15 +11,13 @@
 
 namespace bezel::cli {
 
-using Kind = JsonValue::Kind;
-
 void JsonFields::fail(const JsonValue& at, const std::string& where,
                       const std::string& message) const {
   throw InputError(InputPlace{file_, at.line, where, -1}, message);
 }
 
 void JsonFields::check_object(const JsonValue& value, const std::string& where) const {
-  if (value.kind != Kind::object)
+  if (value.kind != JsonValue::Kind::object)
     fail(value, where, fmt::format("found {}, expected an object", described(value)));
 }
 
@@ -46,13 +44,13 @@ const JsonValue& JsonFields::required(const JsonValue& object, const std::string
 
 double JsonFields::number(const JsonValue& value, const std::string& where) {
   double x = value.number;
-  if (value.kind == Kind::string) {
+  if (value.kind == JsonValue::Kind::string) {
     bool rounded = false;
     if (parse_number(value.text, x, rounded)) {
       if (rounded) ++rounded_;
       return x;
     }
-  } else if (value.kind == Kind::number) {
+  } else if (value.kind == JsonValue::Kind::number) {
     if (std::isfinite(x)) return x;
     fail(value, where, "found a number beyond the range of doubles, expected a finite one");
   }
@@ -60,7 +58,7 @@ double JsonFields::number(const JsonValue& value, const std::string& where) {
 }
 
 std::vector<double> JsonFields::numbers(const JsonValue& list, const std::string& where) {
-  if (list.kind != Kind::array)
+  if (list.kind != JsonValue::Kind::array)
     fail(list, where, fmt::format("found {}, expected an array of numbers", described(list)));
   std::vector<double> out;
   for (std::size_t i = 0; i < list.items.size(); ++i)
@@ -70,25 +68,25 @@ std::vector<double> JsonFields::numbers(const JsonValue& list, const std::string
 
 int JsonFields::whole(const JsonValue& value, const std::string& where, const char* what, int least,
                       int most) const {
-  if (value.kind != Kind::number || !(value.number >= least && value.number <= most) ||
+  if (value.kind != JsonValue::Kind::number || !(value.number >= least && value.number <= most) ||
       value.number != std::floor(value.number))
-    fail(
-        value, where,
-        fmt::format("{}: found {}, expected a whole number from {} to {}", what,
-                    value.kind == Kind::number ? fmt::format("{}", value.number) : described(value),
-                    least, most));
+    fail(value, where,
+         fmt::format("{}: found {}, expected a whole number from {} to {}", what,
+                     value.kind == JsonValue::Kind::number ? fmt::format("{}", value.number)
+                                                           : described(value),
+                     least, most));
   return static_cast<int>(value.number);
 }
 
 bool JsonFields::boolean(const JsonValue& value, const std::string& where, const char* what) const {
-  if (value.kind != Kind::boolean)
+  if (value.kind != JsonValue::Kind::boolean)
     fail(value, where, fmt::format("{}: found {}, expected true or false", what, described(value)));
   return value.number != 0.0;
 }
 
 const std::string& JsonFields::string(const JsonValue& value, const std::string& where,
                                       const char* what) const {
-  if (value.kind != Kind::string)
+  if (value.kind != JsonValue::Kind::string)
     fail(value, where, fmt::format("{}: found {}, expected a string", what, described(value)));
   return value.text;
 }
@@ -98,13 +96,13 @@ std::vector<std::vector<double>> JsonFields::coordinates(const JsonValue& lists,
                                                          std::size_t least, std::size_t most) {
   const char* form =
       most == 2 ? "expected [[x, ...], [y, ...]]" : "expected [[x, ...], [y, ...], [z, ...]]";
-  if (lists.kind != Kind::array)
+  if (lists.kind != JsonValue::Kind::array)
     fail(lists, where, fmt::format("found {}, {}", described(lists), form));
   const std::size_t dim = lists.items.size();
   if (dim < least || dim > most)
     fail(lists, where, fmt::format("found an array of {}, {}", dim, form));
   for (const JsonValue& list : lists.items)
-    if (list.kind != Kind::array)
+    if (list.kind != JsonValue::Kind::array)
       fail(list, where, fmt::format("found {}, {}", described(list), form));
   const std::size_t n = lists.items[0].items.size();
   constexpr const char* names = "xyz";

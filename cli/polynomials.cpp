@@ -71,9 +71,9 @@ bool parse_rational(std::string_view text, std::size_t slash, double& value, boo
 }
 
 /// Receives the parts of the JSON text one after the other.
-class Reader {
+class PolynomialReader {
  public:
-  Reader(const std::string& name, std::string_view json, bool with_parameters)
+  PolynomialReader(const std::string& name, std::string_view json, bool with_parameters)
       : name_(name), json_(json), with_parameters_(with_parameters) {}
 
   Polynomials read() {
@@ -211,7 +211,7 @@ bool parse_number(std::string_view text, double& value, bool& rounded) {
 }
 
 Polynomials read_polynomials(const std::string& name, std::string_view json, bool with_parameters) {
-  Polynomials read = Reader(name, json, with_parameters).read();
+  Polynomials read = PolynomialReader(name, json, with_parameters).read();
   read.name = name;
   return read;
 }

@@ -16,9 +16,9 @@ namespace {
 
 using Kind = JsonValue::Kind;
 
-class Reader : private JsonFields {
+class ShapeReader : private JsonFields {
  public:
-  Reader(const std::string& file, const JsonValue& root) : JsonFields(file), root_(root) {}
+  ShapeReader(const std::string& file, const JsonValue& root) : JsonFields(file), root_(root) {}
 
   Shapes read() {
     read_root();
@@ -196,7 +196,7 @@ class Reader : private JsonFields {
 
 Shapes read_shapes(const std::string& file, std::string_view json) {
   const JsonValue root = read_json(file, json);
-  return Reader(file, root).read();
+  return ShapeReader(file, root).read();
 }
 
 }  // namespace bezel::cli

@@ -1,5 +1,7 @@
 #!/usr/bin/env bash
-# Compiles every public header on its own, with every compiler named (default: g++ and, where present, clang++-14).
+# Compiles every public header on its own with the first compiler named, and all of them together with each further one:
+# both have the same standard library, so what a header lacks shows with one, and only warnings differ (default: g++ and,
+# where present, clang++-14).
 #
 # usage: tools/check_headers.sh [COMPILER...]
 set -euo pipefail
@@ -23,10 +25,10 @@ compile() {
 }
 export -f compile
 
-count=0
-for compiler in "${compilers[@]}"; do
-  mapfile -t headers < <(find bezel -name '*.hpp' | sort)
-  printf '%s\n' "${headers[@]}" | xargs -P "$(nproc)" -I{} bash -c 'compile "$@"' _ "$compiler" {}
-  count=${#headers[@]}
+mapfile -t headers < <(find bezel -name '*.hpp' | sort)
+printf '%s\n' "${headers[@]}" | xargs -P "$(nproc)" -I{} bash -c 'compile "$@"' _ "${compilers[0]}" {}
+for compiler in "${compilers[@]:1}"; do
+  # shellcheck disable=SC2086  # FLAGS is a list
+  printf '#include "%s"\n' "${headers[@]}" | "$compiler" $FLAGS -x c++ - || { echo "with $compiler" >&2; exit 1; }
 done
-echo "$count headers compile on their own with ${compilers[*]}"
+echo "${#headers[@]} headers compile on their own with ${compilers[0]}${compilers[1]:+, together with ${compilers[*]:1}}"

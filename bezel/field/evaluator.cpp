@@ -11,6 +11,7 @@
 #include "bezel/field/element_kernel.hpp"
 #include "bezel/field/field.hpp"
 #include "bezel/mesh/bvh.hpp"
+#include "bezel/numeric/box.hpp"
 
 namespace bezel {
 namespace {
@@ -18,13 +19,10 @@ namespace {
 constexpr double tolerance = 1e-12;  // how far below zero a barycentric may be
 constexpr std::size_t chunk = 128;   // points per task
 
-Box2 padded(Box2 box) {
+Box2 padded(const Box2& box) {
   // Points within `tolerance` of an edge count as inside: at most that part of the control points'
   // extent away, with room for the growth of the map just outside the triangle.
-  const double pad = 16.0 * tolerance * box.diameter();
-  box.lo -= Vec2{pad, pad};
-  box.hi += Vec2{pad, pad};
-  return box;
+  return grown(box, 16.0 * tolerance * box.diameter());
 }
 
 }  // namespace

@@ -91,6 +91,11 @@ std::size_t find_inner_ends(const CurveCache& a, const CurveCache& b, double tau
 
 }  // namespace
 
+bool nowhere_parallel(const CurveCache& a, const CurveCache& b) {
+  return a.slope_hi - a.slope_lo <= 1.0 && b.slope_hi - b.slope_lo <= 1.0 &&
+         directions(a, false, b, false).across;
+}
+
 EndMeeting meet_at_ends(const CurveCache& a, const CurveCache& b, double distance, QuickEnds& out) {
   // Then each runs forward along its chord, on both sides of any of its points.
   if (!(a.slope_hi - a.slope_lo <= 1.0 && b.slope_hi - b.slope_lo <= 1.0))

@@ -21,6 +21,13 @@ struct QuickEnds {
   double gap;           ///< largest distance of the curves' points there, in length units
 };
 
+/// Whether the directions of two curves are seen to be nowhere nearly parallel, whichever points
+/// are compared: they have one common point at most.
+///
+/// @param a, b  from cache_curve
+/// @limits  curves that turn by more than about 45 degrees are never seen to be
+bool nowhere_parallel(const CurveCache& a, const CurveCache& b);
+
 /// Decides quickly how two curves meet in their ends, for a pair that `meet_quickly` does not
 /// decide.
 ///

@@ -8,6 +8,7 @@
 #include "bezel/geometry/curve_check.hpp"
 #include "bezel/geometry/curve_incidence.hpp"
 #include "bezel/geometry/curve_kernel.hpp"
+#include "bezel/numeric/box.hpp"
 
 namespace bezel::geometry_kernel {
 namespace {
@@ -158,11 +159,8 @@ bool Arrangement::build(const TriangleSides& a, const TriangleSides& b,
   parts_[1].clear();
   corner_inside_ = {};
   reason_.clear();
-  const Vec2 reach{{coincidence_distance, coincidence_distance}};
   for (int i = 0; i < 3; ++i) {
-    Box2 box = a.cache(i).box;
-    box.lo -= reach;
-    box.hi += reach;
+    const Box2 box = grown(a.cache(i).box, coincidence_distance);
     if (!box.overlaps(b.box())) continue;
     for (int j = 0; j < 3; ++j)
       if (box.overlaps(b.cache(j).box) && !meet(i, j, coincidence_distance)) return false;
@@ -418,8 +416,7 @@ void Arrangement::tighten(std::int32_t i) {
     const double magnitude = std::max(side.magnitude, sides(1 - k).cache(other.edge).magnitude);
     // de Casteljau's algorithm, twice for either, and some more.
     const double slack = 16.0 * 41.0 * u * magnitude;
-    box.lo -= Vec2{{slack, slack}};
-    box.hi += Vec2{{slack, slack}};
+    box = grown(box, slack);
     double lo = joint.lo[at(k)], hi = joint.hi[at(k)];
     // The largest dyadic steps from either end that certainly miss the box.
     for (double step = 0.5 * (hi - lo); step > 0x1p-40; step *= 0.5) {

@@ -11,6 +11,7 @@
 #include "bezel/geometry/triangle_arrangement.hpp"
 #include "bezel/geometry/triangle_assembly.hpp"
 #include "bezel/geometry/triangle_check.hpp"
+#include "bezel/numeric/box.hpp"
 
 namespace bezel {
 
@@ -63,13 +64,6 @@ Box2 box_of(std::span<const Vec2> control) {
   return box;
 }
 
-Box2 box_grown(Box2 box, double by) {
-  if (by == 0.0) return box;
-  box.lo -= Vec2{{by, by}};
-  box.hi += Vec2{{by, by}};
-  return box;
-}
-
 /// What both operations share.
 struct Both {
   TriangleSides a, b;
@@ -83,7 +77,7 @@ struct Both {
     if (!(distance >= 0.0) || !std::isfinite(distance))
       throw InputError("the coincidence distance must be finite and not negative");
     const bool valid_a = check("first", g, pa), valid_b = check("second", h, pb);
-    if (!box_grown(box_of(pa), distance).overlaps(box_of(pb))) return TriangleRelation::disjoint;
+    if (!grown(box_of(pa), distance).overlaps(box_of(pb))) return TriangleRelation::disjoint;
     if (!valid_a || !valid_b) {
       reason = std::string("it is undecided whether the ") + (valid_a ? "second" : "first") +
                " triangle is valid";

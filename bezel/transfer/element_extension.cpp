@@ -1,12 +1,22 @@
 // The part of a target element that no donor covers.
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "bezel/transfer/accumulate.hpp"
 #include "bezel/transfer/element_kernel.hpp"
 #include "bezel/transfer/extension.hpp"
 
 namespace bezel::detail {
+namespace {
+
+/// Gaps below this fraction of an element hardly change its field, whatever value they have.
+constexpr double small_gap = 1e-8;
+/// Of a polynomial that is continued across an element for that.
+constexpr double most_growth = 256.0;
+
+}  // namespace
 
 template <class Visit>
 void ElementTransfer::extension_points(const Group& g, std::int32_t t, std::span<const Segment> run,
@@ -14,9 +24,15 @@ void ElementTransfer::extension_points(const Group& g, std::int32_t t, std::span
                                        const Visit& visit) {
   Extension extension(g, donor_, target_, search_, t, run, centre);
   const int pt = g.target_space->degree(ElementId(t));
+  struct Point {
+    double w;
+    std::array<double, 2> place;
+    Vec2 x;
+    Extension::Source source;
+  };
+  std::vector<Point> points;
   const auto add = [&](double w, const std::array<double, 2>& place, const Vec2& x) {
-    const auto [d, source] = extension.at(x, w);
-    visit(w, place, d, source);
+    points.push_back({w, place, x, extension.at(x, w)});
   };
   const int pd = g.donor_degree.highest;
   if (g.target_mapped) {
@@ -37,6 +53,36 @@ void ElementTransfer::extension_points(const Group& g, std::int32_t t, std::span
       }
     }
   }
+  // The rays of a fan that leave a bent thin gap sweep much more than it, forth and back, which
+  // does not cancel where another donor serves. So small a gap is filled by one donor then.
+  double swept = 0.0, sum = 0.0;
+  bool one_donor = true;
+  for (const Point& point : points) {
+    swept += std::abs(point.w);
+    sum += point.w;
+    one_donor = one_donor && point.source.donor == points.front().source.donor;
+  }
+  const double own_area = target_.element_area[static_cast<std::size_t>(t)];
+  if (!one_donor && swept > 8.0 * std::abs(sum) && std::abs(sum) <= small_gap * own_area) {
+    Extension single(g, donor_, target_, search_, t, run, centre);
+    const Extension::Source source = single.at(centre, sum);
+    // Its polynomial where that does not grow much, else one value.
+    const int degree = g.donor_space->degree(ElementId(source.donor));
+    std::array<double, 3> warm{};
+    bool found = false, near = true;
+    for (Point& point : points) {
+      const auto q = donor_place(g, source.donor, point.x, warm, found);
+      const double size = std::abs(1.0 - q[0] - q[1]) + std::abs(q[0]) + std::abs(q[1]);
+      near = near && (found || !g.donor_mapped) && std::pow(size, degree) <= most_growth;
+      point.source = {source.donor, q};
+    }
+    for (const Point& point : points)
+      visit(point.w, point.place, source.donor, near ? point.source.place : source.place);
+    report.widen(single.report());
+    return;
+  }
+  for (const Point& point : points)
+    visit(point.w, point.place, point.source.donor, point.source.place);
   report.widen(extension.report());
 }
 

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "bezel/numeric/box.hpp"
+
 namespace bezel::detail {
 namespace {
 
@@ -68,11 +70,7 @@ Box2 widened(const Box2& box, double by) {
   double magnitude = 0.0;
   for (int axis = 0; axis < 2; ++axis)
     magnitude = std::max({magnitude, std::abs(box.lo[axis]), std::abs(box.hi[axis])});
-  const double room = by + widening * box.diameter() + 2.0 * coordinate_rounding * magnitude;
-  Box2 wide = box;
-  wide.lo -= Vec2{{room, room}};
-  wide.hi += Vec2{{room, room}};
-  return wide;
+  return grown(box, by + widening * box.diameter() + 2.0 * coordinate_rounding * magnitude);
 }
 
 double nearest_corner(const OverlayMesh& mesh, std::span<const std::int32_t> elements,

@@ -9,6 +9,7 @@
 #include "bezel/base/error.hpp"
 #include "bezel/geometry/quick_crossing.hpp"
 #include "bezel/geometry/quick_ends.hpp"
+#include "bezel/numeric/box.hpp"
 
 namespace bezel::detail {
 
@@ -30,6 +31,11 @@ constexpr std::array<double, 5> looks = {0.5, 0.25, 0.75, 0.0625, 0.9375};
 /// A barycentric margin that decides at once.
 constexpr double clear_margin = 1e-7;
 
+/// What may touch the box, whatever the rounding.
+Box2 around(const Box2& box) {
+  return grown(box, 1e-9 * box.diameter());
+}
+
 }  // namespace
 
 ElementOverlay::ElementOverlay(const OverlayMesh& donor, const OverlayMesh& target,
@@ -37,28 +43,33 @@ ElementOverlay::ElementOverlay(const OverlayMesh& donor, const OverlayMesh& targ
     : donor_(donor),
       target_(target),
       search_(search),
-      record_place_(target.edge_count()),
+      record_numbers_(target.edge_count()),
       vertex_place_(target.mesh->node_count(), unlocated),
-      inner_place_(donor.edge_count()),
+      parts_(donor.edge_count()),
       inside_stamp_(donor.mesh->node_count(), 0),
       edge_stamp_(donor.edge_count(), 0),
-      group_(donor.element_count() + 1) {}
+      regions_(donor.element_count()) {}
 
 void ElementOverlay::begin_chunk(std::span<const std::int32_t> elements) {
-  ++chunk_;
+  record_numbers_.begin();
   records_.clear();
+  chunk_.clear();
+  next_element_ = 0;
   details_.clear();
-  step_count_ = 0;
+  steps_.clear();
   contacts_.clear();
   coincidences_.clear();
   pieces_.clear();
   candidates_.clear();
   candidates_of_ = -1;
   if (!is_straight()) return;
+  ElementRecords* own = chunk_.room(elements.size());
   for (const std::int32_t t : elements) {
-    for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)])
-      record_of(side.edge.value);
+    own->element = t;
+    find_records_of(t, own->record);
+    ++own;
   }
+  chunk_.resize(elements.size());
   walk_straight_edges(0);
 }
 
@@ -66,12 +77,8 @@ void ElementOverlay::find_candidates(std::int32_t t) {
   if (candidates_of_ == t) return;
   candidates_of_ = t;
   const Box2& box = target_.element_box[static_cast<std::size_t>(t)];
-  const double room = 1e-9 * box.diameter();
-  Box2 wide = box;
-  wide.lo -= Vec2{{room, room}};
-  wide.hi += Vec2{{room, room}};
   near_.swap(candidates_);
-  search_.query(wide, near_, search_memory_, candidates_);
+  search_.query(around(box), near_, search_memory_, candidates_);
   candidate_edges_.clear();
   if (++edge_now_ == 0) {
     std::fill(edge_stamp_.begin(), edge_stamp_.end(), 0U);
@@ -172,27 +179,18 @@ void ElementOverlay::overlay_edge(Record& record) {
   const CurveCache& own = target_.edge_cache(edge, own_room);
   const Box2& box = own.box;
   const double own_width = target_.edge_width(edge);
-  record.details = static_cast<std::int32_t>(details_.size());
-  Details& details = details_.emplace_back();
-  details.contact_begin = static_cast<std::uint32_t>(contacts_.size());
-  details.coincidence_begin = static_cast<std::uint32_t>(coincidences_.size());
-  details.piece_begin = static_cast<std::uint32_t>(pieces_.size());
+  begin_details(record);
+  Details& details = details_of(record);
 
-  Box2 generous = box;
-  const double generous_room = std::max(1e-9 * own.diameter, coordinate_rounding * own.magnitude);
-  generous.lo -= Vec2{{generous_room, generous_room}};
-  generous.hi += Vec2{{generous_room, generous_room}};
+  const Box2 generous =
+      grown(box, std::max(1e-9 * own.diameter, coordinate_rounding * own.magnitude));
   for (const std::int32_t e : candidate_edges_) {
     const Box2 other = donor_.edge_box(e);
     if (!generous.overlaps(other)) continue;
     const CurveCache& facing = donor_.edge_cache(e, facing_room);
     const double distance = coincidence_distance(std::min(own_width, donor_.edge_width(e)),
                                                  std::max(own.magnitude, facing.magnitude));
-    const Vec2 room{{distance, distance}};
-    Box2 wide = box;
-    wide.lo -= room;
-    wide.hi += room;
-    if (!wide.overlaps(other)) continue;
+    if (!grown(box, distance).overlaps(other)) continue;
     if (meet_ordinarily(own, facing, distance, e, record)) continue;
     IntersectOptions options;
     options.coincidence_distance = distance;
@@ -304,8 +302,9 @@ void ElementOverlay::donor_edges_inside(std::int32_t t) {
   // Contacts of T's boundary with donor edges, ordered along the donor edges.
   marks_.clear();
   covered_.clear();
-  for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
-    const Details& record = details_of(records_[record_of(side.edge.value)]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const SideEdge& side = target_.element_edges[static_cast<std::size_t>(t)][k];
+    const Details& record = details_of(records_[own_[k]]);
     for (std::uint32_t i = record.contact_begin; i < record.contact_end; ++i) {
       const Contact& c = contacts_[i];
       const bool inner = is_inner(c.r) && is_inner(c.s);
@@ -332,7 +331,7 @@ void ElementOverlay::donor_edges_inside(std::int32_t t) {
 
   // Edges without a contact are inside T or outside it as a whole.
   for (const Mark& mark : marks_) edge_stamp_[static_cast<std::size_t>(mark.edge)] = edge_now_ - 1;
-  const Box2& box = target_.element_box[static_cast<std::size_t>(t)];
+  const Box2 box = around(target_.element_box[static_cast<std::size_t>(t)]);
   for (const std::int32_t e : candidate_edges_) {
     if (edge_stamp_[static_cast<std::size_t>(e)] != edge_now_) continue;
     const auto curve = donor_.edge(e);
@@ -383,23 +382,33 @@ void ElementOverlay::donor_edges_inside(std::int32_t t) {
   }
 }
 
-std::size_t ElementOverlay::record_of(std::int32_t edge) {
-  Place& place = record_place_[static_cast<std::size_t>(edge)];
-  if (place.stamp != chunk_) {
-    place = {chunk_, static_cast<std::int32_t>(records_.size())};
-    records_.emplace_back().edge = edge;
+// Which edges are new is as good as random: no branch depends on it.
+void ElementOverlay::find_records_of(std::int32_t t, std::array<std::uint32_t, 3>& found) {
+  const auto& sides = target_.element_edges[static_cast<std::size_t>(t)];
+  Record* const records = records_.room(3) - records_.size();
+  std::size_t count = records_.size();
+  for (std::size_t k = 0; k < 3; ++k) {
+    records[count] = Record{};
+    records[count].edge = sides[k].edge.value;
+    found[k] = record_numbers_.take(sides[k].edge.value);
+    count = record_numbers_.count();
   }
-  return static_cast<std::size_t>(place.at);
+  records_.resize(count);
 }
 
 void ElementOverlay::find_records(std::int32_t t) {
-  const auto& sides = target_.element_edges[static_cast<std::size_t>(t)];
-  const std::size_t known = records_.size();
-  for (std::size_t k = 0; k < 3; ++k) own_[k] = record_of(sides[k].edge.value);
-  if (is_straight() && records_.size() > known) walk_straight_edges(known);
-  for (const std::size_t i : own_) {
+  if (next_element_ < chunk_.size() && chunk_[next_element_].element == t) {
+    own_ = chunk_[next_element_++].record;
+  } else {
+    const std::size_t known = records_.size();
+    find_records_of(t, own_);
+    if (is_straight() && records_.size() > known) walk_straight_edges(known);
+  }
+  for (const std::uint32_t i : own_) {
     Record& record = records_[i];
-    if (record.walked() || record.details >= 0 || walk_edge(record) || share_edge(record)) continue;
+    if (record.walked() || record.details >= 0 || walk_edge(record) || share_edge(record) ||
+        join_edge(record))
+      continue;
     find_candidates(t);
     overlay_edge(record);
   }
@@ -408,7 +417,7 @@ void ElementOverlay::find_records(std::int32_t t) {
 void ElementOverlay::add(std::int32_t t, OverlayList& list, OverlayCounts& counts) {
   find_records(t);
   bool walked = true;
-  for (const std::size_t i : own_) {
+  for (const std::uint32_t i : own_) {
     const Record& record = records_[i];
     const auto& owner = target_.edge_sides[static_cast<std::size_t>(record.edge)];
     const bool owned = (owner[0] != exterior ? owner[0] : owner[1]) == t;
@@ -456,8 +465,9 @@ std::pair<std::size_t, std::int32_t> ElementOverlay::facing_coincidence(const De
 
 void ElementOverlay::find_boundary_segments(std::int32_t t) {
   segments_.clear();
-  for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
-    const Details& record = unfold(records_[record_of(side.edge.value)]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const SideEdge& side = target_.element_edges[static_cast<std::size_t>(t)][k];
+    const Details& record = unfold(records_[own_[k]]);
     for (std::uint32_t i = record.piece_begin; i < record.piece_end; ++i) {
       const Piece& piece = pieces_[i];
       Segment segment;
@@ -489,13 +499,11 @@ void ElementOverlay::find_boundary_segments(std::int32_t t) {
   }
 }
 
-// T is a donor element: all three edges are edges of it, as a whole.
+// T lies inside a donor element, or is one: its boundary does.
 bool ElementOverlay::is_one_donor() const {
-  return segments_.size() == 3 && segments_[0].donor != exterior &&
-         std::all_of(segments_.begin(), segments_.end(), [&](const Segment& segment) {
-           return segment.donor == segments_[0].donor && segment.source.edge >= 0 &&
-                  std::abs(segment.source.to - segment.source.from) == 1.0;
-         });
+  return segments_[0].donor != exterior &&
+         std::all_of(segments_.begin(), segments_.end(),
+                     [&](const Segment& segment) { return segment.donor == segments_[0].donor; });
 }
 
 void collect_segments(const ElementPieces& own, std::vector<Segment>& out) {

@@ -16,7 +16,10 @@
 
 #include "bezel/geometry/curve.hpp"
 #include "bezel/geometry/curve_kernel.hpp"
+#include "bezel/transfer/numbering.hpp"
 #include "bezel/transfer/overlay_mesh.hpp"
+#include "bezel/transfer/pile.hpp"
+#include "bezel/transfer/straight_walk.hpp"
 
 namespace bezel::detail {
 
@@ -34,9 +37,6 @@ inline double coincidence_distance(double smallest_width, double largest_coordin
 inline double coincidence_distance(const CurveCache& a, const CurveCache& b) {
   return coincidence_distance(std::min(a.diameter, b.diameter), std::max(a.magnitude, b.magnitude));
 }
-/// A contact tells sides only when it is this far (in parameter) from edge ends and from other
-/// contacts.
-inline constexpr double contact_isolation = 1e-9;
 inline bool is_inner(double r) {
   return r > contact_isolation && r < 1.0 - contact_isolation;
 }
@@ -100,9 +100,9 @@ class OverlayList {
             {segments.data() + begin.segment, end.segment - begin.segment}};
   }
 
-  std::vector<std::int32_t> donors;
-  std::vector<BoundaryPiece> pieces;
-  std::vector<Segment> segments;
+  Pile<std::int32_t> donors;
+  Pile<BoundaryPiece> pieces;
+  Pile<Segment> segments;
 
  private:
   struct End {
@@ -150,21 +150,18 @@ class ElementOverlay {
     std::int32_t donor;        // donor element or exterior
     std::int32_t coincidence;  // index into coincidences_, -1 when the piece is not on a donor edge
   };
-  /// Along a target edge that was walked: its piece in a donor element and how it leaves that.
-  struct Step {
-    double r, s;
-    std::int32_t donor;
-    std::int32_t donor_edge;  // crossed at r; -1 at the target edge's end
-    std::int32_t next;
-    std::int32_t sign;  // of the crossing, as a contact's
-  };
   struct Record {
-    std::int32_t edge;
+    std::int32_t edge = -1;
     std::int32_t first_step = -1;  // of a walk: all contacts are plain crossings
+    std::int32_t stride = 1;       // of its steps
     std::int32_t details = -1;     // of an edge that was not walked, or unfolded
     std::int32_t crossings = 0;
     double gap = 0;  // largest between points of the two meshes, of the edge's diameter
     bool walked() const { return first_step >= 0; }
+  };
+  struct ElementRecords {
+    std::int32_t element;
+    std::array<std::uint32_t, 3> record;
   };
   struct Details {
     std::uint32_t contact_begin = 0, contact_end = 0;
@@ -178,38 +175,45 @@ class ElementOverlay {
     std::int8_t direction;                    // +1 enters T as s increases, -1 leaves, 0 unknown
     std::array<std::int32_t, 2> region = {};  // beside the edge; where edges were walked only
   };
-  /// A part of a donor edge inside T.
+  /// A part of a donor edge inside T: numbers that are written apart stay apart, else they would be
+  /// read together before they are there.
   struct InnerPart {
-    std::array<double, 2> end = {0.0, 1.0};
-    std::int32_t edge = -1;
-    std::array<std::int32_t, 2> region{};  // left and right
-    std::uint32_t cut = 0;  // bit k: by T's boundary at end k; else the edge ends there, inside T
+    struct End {
+      double s;             // inside the edge where T's boundary cuts it, else 0 or 1
+      std::int32_t region;  // left of the edge at the first end, right of it at the second
+      std::int32_t edge;
+    };
+    std::array<End, 2> end;
   };
-  /// A straight target edge a + r d on its way through the donor mesh.
-  struct Walk {
-    Vec2 a, d;
-    double size;  // of d
-    // Of the line, cross(d, x - a), at the ends of the side that it leaves by: right and left of
-    // it.
-    std::array<double, 2> beside;
-    double r, gap_squared, last_gap_squared;
-    std::int32_t donor, side, first_step, last_step, steps, record;
-    bool ended;
+  /// A step around an element.
+  struct BoundaryStep {
+    std::int32_t step, side;
   };
 
-  static constexpr std::int32_t unlocated = -2;
+  static constexpr std::int32_t unlocated = -2, sought = -3;
   /// In place of a vertex's donor element where it is a vertex of the donor mesh: minus the node.
-  static constexpr std::int32_t first_node = -3;
-
-  /// Where something is remembered that holds for one chunk or element only.
-  struct Place {
-    std::uint32_t stamp = 0;
-    std::int32_t at = 0;
+  static constexpr std::int32_t first_node = -4;
+  /// ... where it lies on a donor edge: minus the number in on_edges_.
+  static constexpr std::int32_t first_on_edge = -(1 << 30);
+  /// On a donor edge, far from its ends.
+  struct EdgePoint {
+    std::int32_t edge = -1;
+    double s = 0, gap = 0;
+  };
+  /// Where a target edge ends: in an element, on a donor edge or in a donor vertex.
+  struct EdgeEnd {
+    std::int32_t edge = -1, node = -1;
+    double s = 0, gap = 0;
+    std::span<const std::int32_t> edges;  // that hold it
+    std::vector<std::int32_t> elements;   // around it
   };
 
-  /// The number of an edge's record in this chunk; a new one is empty.
-  std::size_t record_of(std::int32_t edge);
+  /// The numbers of the records of an element's edges in this chunk; new ones are empty.
+  void find_records_of(std::int32_t t, std::array<std::uint32_t, 3>& found);
   void find_records(std::int32_t t);
+  const WalkStep* first_step(const Record& record) const {
+    return steps_.data() + record.first_step;
+  }
   Details& details_of(const Record& record) {
     return details_[static_cast<std::size_t>(record.details)];
   }
@@ -223,28 +227,42 @@ class ElementOverlay {
   std::int32_t donor_at_vertex(std::int32_t vertex, std::int32_t near);
   bool walk_edge(Record& record);
   bool share_edge(Record& record);
+  /// The place of a point that is a donor vertex or lies on a donor edge; exterior when it is and
+  /// does neither.
+  std::int32_t place_on_edges(const Vec2& p);
   std::int32_t donor_node(const Vec2& p);
-  void add_step(const Step& step);
+  /// The donor vertex that a located vertex is; -1: none.
+  std::int32_t donor_node_at(std::int32_t vertex) const {
+    const std::int32_t place = vertex_place_[static_cast<std::size_t>(vertex)];
+    return place <= first_node && place > first_on_edge ? first_node - place : -1;
+  }
+  /// Adds all that the curve crosses from the elements in walk_ on to the contacts.
+  bool cross_on_the_way(const CurveCache& curve, double& gap);
+  // Edges that end on edges (overlay_join.cpp).
+  std::int32_t place_on_edge(const Vec2& p);
+  bool find_end(std::int32_t vertex, EdgeEnd& end) const;
+  void begin_details(Record& record);
+  void end_details(const Record& record);
+  bool follow_edges(Record& record);
+  bool reach_across(Record& record);
+  bool join_edge(Record& record);
   /// The record's contacts and pieces, from the steps of a walk if need be.
   const Details& unfold(Record& record);
   bool walk_inside(std::int32_t t, OverlayList& list);
-  bool cross_boundary(std::int32_t t, OverlayList& list);
+  void cross_boundary(std::int32_t t, OverlayList& list);
   bool order_crossings(std::int32_t t);
-  void add_inner_parts(OverlayList& list);
+  bool add_inner_parts(OverlayList& list);
+  void add_inner_edges(OverlayList& list);
   // Straight edges (straight_walk.cpp).
   bool is_straight() const { return !search_.straight().empty() && target_.degree == 1; }
+  void locate_vertices(std::size_t first_record);
   void walk_straight_edges(std::size_t first_record);
-  bool start_walk(std::size_t record, Walk& walk);
-  void advance_walks();
-  void finish_walk(const Walk& walk);
+  bool start_walk(std::size_t record, StraightWalk& walk);
+  void finish_walk(const StraightWalk& walk);
   /// The number of a donor's region.
   std::int32_t region_of(std::int32_t donor, OverlayList& list) {
-    Place& group = group_[static_cast<std::size_t>(donor + 1)];
-    if (group.stamp != now_) {
-      group = {now_, static_cast<std::int32_t>(group_count_++)};
-      list.donors.push_back(donor);
-    }
-    return group.at;
+    if (!regions_.knows(donor)) list.donors.push_back(donor);
+    return static_cast<std::int32_t>(regions_.take(donor));
   }
   /// Puts all common points of two edges on the list of contacts, when all are plain crossings.
   bool plain_crossings(const CurveCache& curve, const CurveCache& other, double distance,
@@ -268,23 +286,28 @@ class ElementOverlay {
   const OverlayMesh& target_;
   const FrontSearch& search_;
   FrontSearch::Memory search_memory_;
-  std::uint32_t chunk_ = 0;
-  std::vector<Record> records_;  // of the chunk's edges
+  Pile<Record> records_;  // of the chunk's edges
   std::vector<Details> details_;
-  std::array<std::size_t, 3> own_{};        // the records of the element's edges
-  std::vector<Place> record_place_;         // by target edge
+  Numbering record_numbers_;                // by target edge
+  Pile<ElementRecords> chunk_;              // its elements
+  std::size_t next_element_ = 0;            // of them
+  std::array<std::uint32_t, 3> own_{};      // the records of the element's edges
   std::vector<std::int32_t> vertex_place_;  // by target node: the donor element around it
   std::int32_t last_donor_ = 0;             // of the vertices looked at
-  std::vector<Step> steps_;                 // room for more than step_count_
-  std::size_t step_count_ = 0;
-  std::vector<Walk> walks_;
-  std::vector<std::uint32_t> going_;  // numbers of walks
-  std::uint32_t now_ = 0;             // the stamp of what is remembered
-  std::vector<Place> inner_place_;    // by donor edge: its part
-  std::vector<InnerPart> inner_;      // room for more than inner_count_
+  Pile<WalkStep> steps_;
+  Pile<StraightWalk> walks_;
+  Pile<SoughtPoint> sought_;
+  Pile<BoundaryStep> boundary_steps_;
+  Numbering parts_;               // by donor edge: its part
+  std::vector<InnerPart> inner_;  // room for more than inner_count_
   std::size_t inner_count_ = 0;
+  std::size_t crossing_count_ = 0;           // of T's boundary
+  std::uint32_t now_ = 0;                    // the stamp of vertices inside T
   std::vector<std::uint32_t> inside_stamp_;  // by donor node
   std::vector<std::int32_t> walk_;
+  std::vector<EdgePoint> on_edges_;  // target vertices
+  std::array<EdgeEnd, 2> ends_;
+  CurveCache own_room_{};
   std::int32_t candidates_of_ = -1;  // the target element that candidates_ were found for
   std::vector<Contact> contacts_;
   std::vector<Coincidence> coincidences_;
@@ -296,8 +319,7 @@ class ElementOverlay {
   std::vector<std::pair<std::int32_t, std::pair<double, double>>>
       covered_;  // donor edge, s interval on T's boundary
   std::vector<Segment> segments_;
-  std::vector<Place> group_;  // by donor element + 1: its region
-  std::size_t group_count_ = 0;
+  Numbering regions_;  // by donor element or exterior
   std::vector<std::uint32_t> slots_, group_end_;
   std::vector<double> breaks_;
   CurveIntersections found_;

@@ -3,9 +3,13 @@
 // near the element.
 
 #include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstring>
 #include <tuple>
 
 #include "bezel/geometry/quick_crossing.hpp"
+#include "bezel/numeric/box.hpp"
 #include "bezel/transfer/overlay.hpp"
 
 namespace bezel::detail {
@@ -19,28 +23,51 @@ namespace {
 /// Parameters of a crossing known to within this are sure to be in order with others.
 constexpr double reliable_condition = 0.01 * contact_isolation;
 
+/// Of an edge's walk.
+constexpr std::int32_t usual_steps = 4;
+
+std::int8_t sign_of(const WalkStep& step) {
+  return step.from_right != 0 ? std::int8_t{-1} : std::int8_t{1};
+}
+
+/// Sets `from` (0) or `to` (1) to a number with these bits, without a branch.
+void set_end(Part& part, std::size_t end, std::uint64_t r) {
+  static_assert(offsetof(Part, to) == offsetof(Part, from) + sizeof r);
+  std::memcpy(reinterpret_cast<std::byte*>(&part) + offsetof(Part, from) + end * sizeof r, &r,
+              sizeof r);
+}
+
 }  // namespace
 
 std::int32_t ElementOverlay::donor_at_vertex(std::int32_t vertex, std::int32_t near) {
   std::int32_t& place = vertex_place_[static_cast<std::size_t>(vertex)];
   if (place == unlocated) {
+    const Vec2& p = target_.mesh->control(NodeId(vertex));
     const std::int32_t start = vertex_place_[static_cast<std::size_t>(near)];
-    place = search_.containing(target_.mesh->control(NodeId(vertex)),
-                               start >= 0 ? start : last_donor_, search_memory_);
-    if (place != exterior) {
-      last_donor_ = place;
-    } else {
-      const std::int32_t node = donor_node(target_.mesh->control(NodeId(vertex)));
-      if (node >= 0) place = first_node - node;
+    // Where one vertex is no element's own the next seldom is. No vertex is found both ways.
+    const bool on_edges = start <= first_node;
+    place = on_edges ? place_on_edges(p) : exterior;
+    if (place == exterior) {
+      place = search_.containing(p, start >= 0 ? start : last_donor_, search_memory_);
+      if (place != exterior) last_donor_ = place;
     }
+    if (place == exterior && !on_edges) place = place_on_edges(p);
   }
   return std::max(place, exterior);
+}
+
+std::int32_t ElementOverlay::place_on_edges(const Vec2& p) {
+  const std::int32_t node = donor_node(p);
+  if (node >= 0) return first_node - node;
+  const std::int32_t point = place_on_edge(p);
+  return point >= 0 ? first_on_edge - point : exterior;
 }
 
 // Bit for bit; -1 when there is none.
 std::int32_t ElementOverlay::donor_node(const Vec2& p) {
   Box2 point;
   point.include(p);
+  point = grown(point, coordinate_rounding * geometry_kernel::largest_coordinate(point));
   search_.query(point, {}, search_memory_, walk_);
   for (const std::int32_t element : walk_) {
     for (const SideEdge& side : donor_.element_edges[static_cast<std::size_t>(element)]) {
@@ -55,8 +82,7 @@ std::int32_t ElementOverlay::donor_node(const Vec2& p) {
 // nothing.
 bool ElementOverlay::share_edge(Record& record) {
   const auto& ends = target_.edge_vertex[static_cast<std::size_t>(record.edge)];
-  const std::int32_t from = first_node - vertex_place_[static_cast<std::size_t>(ends[0])],
-                     to = first_node - vertex_place_[static_cast<std::size_t>(ends[1])];
+  const std::int32_t from = donor_node_at(ends[0]), to = donor_node_at(ends[1]);
   if (from < 0 || to < 0) return false;
   const auto curve = target_.edge(record.edge);
   for (const std::int32_t e : search_.edges_at(from)) {
@@ -71,46 +97,23 @@ bool ElementOverlay::share_edge(Record& record) {
     if (turned ? !std::equal(curve.begin(), curve.end(), other.rbegin(), other.rend())
                : !std::equal(curve.begin(), curve.end(), other.begin(), other.end()))
       continue;
-    record.details = static_cast<std::int32_t>(details_.size());
-    Details& details = details_.emplace_back();
-    details.contact_begin = details.contact_end = static_cast<std::uint32_t>(contacts_.size());
-    details.coincidence_begin = static_cast<std::uint32_t>(coincidences_.size());
-    details.piece_begin = static_cast<std::uint32_t>(pieces_.size());
+    begin_details(record);
     pieces_.push_back({0.0, 1.0, exterior, static_cast<std::int32_t>(coincidences_.size())});
     coincidences_.push_back({0.0, 1.0, turned ? 1.0 : 0.0, turned ? 0.0 : 1.0, e, false});
-    details.coincidence_end = details.coincidence_begin + 1;
-    details.piece_end = details.piece_begin + 1;
-    details.overlaps = 1;
+    details_of(record).overlaps = 1;
+    end_details(record);
     return true;
   }
   return false;
 }
 
-// The donor elements that the edge meets are connected by the edges it crosses; and the crossings
-// in their order lead from the element around the first vertex to that around the last. So nothing
-// depends on where a walk began, and a crossing that was missed would show.
-bool ElementOverlay::walk_edge(Record& record) {
-  const std::int32_t edge = record.edge;
-  const auto& ends = target_.edge_vertex[static_cast<std::size_t>(edge)];
-  const std::int32_t first = donor_at_vertex(ends[0], ends[1]),
-                     last = donor_at_vertex(ends[1], ends[0]);
-  if (first == exterior || last == exterior) return false;
-  CurveCache room, other_room;
-  const CurveCache& curve = target_.edge_cache(edge, room);
-  const auto begin = contacts_.size();
-  const auto give_up = [&] {
-    contacts_.resize(begin);
-    return false;
-  };
-  next_stamp();
-  walk_.assign(1, first);
+bool ElementOverlay::cross_on_the_way(const CurveCache& curve, double& gap) {
+  CurveCache other_room;
   QuickCrossing crossing{};
-  double gap = 0.0;
   for (std::size_t i = 0; i < walk_.size(); ++i) {
     for (const SideEdge& side : donor_.element_edges[static_cast<std::size_t>(walk_[i])]) {
-      std::uint32_t& stamp = inner_place_[side.edge.index()].stamp;
-      if (stamp == now_) continue;
-      stamp = now_;
+      if (parts_.knows(side.edge.value)) continue;
+      parts_.mark(side.edge.value, 0);
       const CurveCache& other = donor_.edge_cache(side.edge.value, other_room);
       const double distance = coincidence_distance(curve, other);
       if (curve.box.lo[0] > other.box.hi[0] + distance ||
@@ -129,46 +132,64 @@ bool ElementOverlay::walk_edge(Record& record) {
           gap = std::max(gap, crossing.gap);
           break;
         case Meeting::unclear:
-          if (!plain_crossings(curve, other, distance, side.edge.value, gap)) return give_up();
+          if (!plain_crossings(curve, other, distance, side.edge.value, gap)) return false;
       }
       if (contacts_.size() == count) continue;
-      if (next == exterior) return give_up();
+      if (next == exterior) return false;
       walk_.push_back(next);
     }
   }
+  return true;
+}
+
+// The donor elements that the edge meets are connected by the edges it crosses; and the crossings
+// in their order lead from the element around the first vertex to that around the last. So nothing
+// depends on where a walk began, and a crossing that was missed would show.
+bool ElementOverlay::walk_edge(Record& record) {
+  const std::int32_t edge = record.edge;
+  const auto& ends = target_.edge_vertex[static_cast<std::size_t>(edge)];
+  const std::int32_t first = donor_at_vertex(ends[0], ends[1]),
+                     last = donor_at_vertex(ends[1], ends[0]);
+  if (first == exterior || last == exterior) return false;
+  CurveCache room;
+  const CurveCache& curve = target_.edge_cache(edge, room);
+  const auto begin = contacts_.size();
+  const auto give_up = [&] {
+    contacts_.resize(begin);
+    return false;
+  };
+  next_stamp();
+  walk_.assign(1, first);
+  double gap = 0.0;
+  if (!cross_on_the_way(curve, gap)) return give_up();
   const auto contacts = std::span(contacts_).subspan(begin);
   std::sort(contacts.begin(), contacts.end(),
             [](const Contact& a, const Contact& b) { return a.r < b.r; });
 
-  const std::size_t first_step = step_count_;
+  const std::size_t first_step = steps_.size();
   double r = 0.0;
   std::int32_t donor = first;
   for (const Contact& c : contacts) {
     const auto& sides = donor_.edge_sides[static_cast<std::size_t>(c.donor_edge)];
     const bool from_left = c.sign > 0;
     if (c.r - r < contact_isolation || sides[from_left ? 0 : 1] != donor) {
-      step_count_ = first_step;
+      steps_.resize(first_step);
       return give_up();
     }
-    add_step({c.r, c.s, donor, c.donor_edge, static_cast<std::int32_t>(step_count_ + 1), c.sign});
+    steps_.push_back({c.r, c.s, donor, c.donor_edge, from_left ? 0 : 1});
     r = c.r;
     donor = sides[from_left ? 1 : 0];
   }
   if (donor != last) {
-    step_count_ = first_step;
+    steps_.resize(first_step);
     return give_up();
   }
-  add_step({1.0, 0.0, donor, -1, -1, 0});
+  steps_.push_back({1.0, 0.0, donor, -1, 0});
   record.first_step = static_cast<std::int32_t>(first_step);
   record.gap = gap / std::max(curve.diameter, 1e-300);
   record.crossings = static_cast<std::int32_t>(contacts.size());
   contacts_.resize(begin);
   return true;
-}
-
-void ElementOverlay::add_step(const Step& step) {
-  if (step_count_ == steps_.size()) steps_.resize(2 * step_count_ + 64);
-  steps_[step_count_++] = step;
 }
 
 const ElementOverlay::Details& ElementOverlay::unfold(Record& record) {
@@ -178,13 +199,11 @@ const ElementOverlay::Details& ElementOverlay::unfold(Record& record) {
   details.contact_begin = static_cast<std::uint32_t>(contacts_.size());
   details.piece_begin = static_cast<std::uint32_t>(pieces_.size());
   double r = 0.0;
-  for (std::int32_t i = record.first_step; i >= 0;) {
-    const Step& step = steps_[static_cast<std::size_t>(i)];
-    pieces_.push_back({r, step.r, step.donor, -1});
-    if (step.donor_edge >= 0)
-      contacts_.push_back({step.r, step.s, step.donor_edge, static_cast<std::int8_t>(step.sign)});
-    r = step.r;
-    i = step.next;
+  for (const WalkStep* step = first_step(record);; step += record.stride) {
+    pieces_.push_back({r, step->r, step->donor, -1});
+    if (step->donor_edge < 0) break;
+    contacts_.push_back({step->r, step->s, step->donor_edge, sign_of(*step)});
+    r = step->r;
   }
   details.contact_end = static_cast<std::uint32_t>(contacts_.size());
   details.piece_end = static_cast<std::uint32_t>(pieces_.size());
@@ -209,102 +228,102 @@ bool ElementOverlay::plain_crossings(const CurveCache& curve, const CurveCache& 
 }
 
 void ElementOverlay::next_stamp() {
-  group_count_ = 0;
+  parts_.begin();
+  regions_.begin();
   if (++now_ == 0) {
-    std::fill(inner_place_.begin(), inner_place_.end(), Place{});
     std::fill(inside_stamp_.begin(), inside_stamp_.end(), 0U);
-    std::fill(group_.begin(), group_.end(), Place{});
     now_ = 1;
   }
 }
 
-// The pieces of T's edges, and the donor edges that they cross. A donor edge crosses T's boundary
-// once or, where it enters and leaves, twice; false when one does more or an order is not plain.
-// What is new and what was met before is as good as random: no branch depends on it.
-bool ElementOverlay::cross_boundary(std::int32_t t, OverlayList& list) {
-  const auto& sides = target_.element_edges[static_cast<std::size_t>(t)];
-  std::size_t most = 4;
-  for (const std::size_t i : own_) most += static_cast<std::size_t>(records_[i].crossings);
-  if (inner_.size() < most) inner_.resize(2 * most);
-  const std::size_t donors_before = list.donors.size();
-  list.donors.resize(donors_before + most);
-  std::int32_t* const donors = list.donors.data() + donors_before;
-  const Step* const steps = steps_.data();
-  Place* const group = group_.data() + 1;
-  Place* const places = inner_place_.data();
-  InnerPart* const inner = inner_.data();
-  const std::uint32_t now = now_;
-  std::int32_t regions = 0, parts = 0;
-  std::uint32_t twice = 0;
-  // What is remembered at a place, or the next number; counts that when it is new.
-  const auto number_at = [now](Place& place, std::int32_t& count) {
-    const Place before = place;
-    const auto known = -static_cast<std::int32_t>(before.stamp == now);  // all bits or none
-    const std::int32_t number = (before.at & known) | (count & ~known);
-    place = {now, number};
-    count += 1 + known;
-    return number;
+// The pieces of T's edges, and the donor edges that they cross: a donor edge crosses T's boundary
+// once or, where it enters and leaves, twice; what is found of one that does more is wrong. What is
+// new and what was met before is as good as random, and so is where an edge ends: no branch depends
+// on it, and no step waits for another.
+void ElementOverlay::cross_boundary(std::int32_t t, OverlayList& list) {
+  struct Side {
+    std::int32_t edge;
+    std::uint32_t turned;
   };
-  const auto region_at = [&](std::int32_t donor) {
-    const std::int32_t number = number_at(group[donor], regions);
-    donors[number] = donor;
-    return number;
-  };
+  std::array<Side, 3> sides{};
+  std::array<std::size_t, 3> lengths{};
+  std::size_t count = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::int32_t edge = sides[k].edge.value;
-    const std::size_t turned = sides[k].reversed ? 1 : 0;
-    const Step* step = steps + records_[own_[k]].first_step;
-    double r = 0.0;
-    std::int32_t region = region_at(step->donor);
-    for (;;) {
-      BoundaryPiece& piece = list.pieces.emplace_back();
-      piece.part.edge = edge;
-      piece.part.from = turned != 0 ? step->r : r;
-      piece.part.to = turned != 0 ? r : step->r;
+    const SideEdge& side = target_.element_edges[static_cast<std::size_t>(t)][k];
+    sides[k] = {side.edge.value, side.reversed ? 1U : 0U};
+    lengths[k] = static_cast<std::size_t>(records_[own_[k]].crossings) + 1;
+    count += lengths[k];
+  }
+  // All steps in a row; of most edges more are noted than there are, which the next then hides.
+  BoundaryStep* place = boundary_steps_.room(count + usual_steps);
+  const BoundaryStep* const boundary = place;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Record& record = records_[own_[k]];
+    const auto side = static_cast<std::int32_t>(k);
+    for (std::int32_t i = 0; i < usual_steps; ++i)
+      place[i] = {record.first_step + i * record.stride, side};
+    for (auto i = usual_steps; i <= record.crossings; ++i)
+      place[i] = {record.first_step + i * record.stride, side};
+    place += lengths[k];
+  }
+  crossing_count_ = count - 3;
+  if (inner_.size() < count + 2) inner_.resize(2 * count + 2);
+  std::int32_t* const donors = list.donors.room(count);
+  BoundaryPiece* const pieces = list.pieces.room(count);
+  const WalkStep* const steps = steps_.data();
+  InnerPart* const inner = inner_.data();
+  // Where edges end no donor edge is crossed: what is noted of "its" part goes where none is.
+  parts_.mark(-1, static_cast<std::uint32_t>(count));
+  {
+    Numbering::Taker regions(regions_), parts(parts_);
+    std::uint64_t r = 0;                                 // the bits
+    std::int32_t* beyond = &inner[count].end[0].region;  // of the part before
+    for (std::size_t i = 0; i < count; ++i) {
+      const Side& side = sides[static_cast<std::size_t>(boundary[i].side)];
+      const WalkStep& step = steps[boundary[i].step];
+      const std::uint32_t number = regions.take(step.donor);
+      donors[number] = step.donor;
+      const auto region = static_cast<std::int32_t>(number);
+      *beyond = region;
+      const auto step_r = std::bit_cast<std::uint64_t>(step.r);
+      BoundaryPiece& piece = pieces[i];
+      piece.part.edge = side.edge;
+      set_end(piece.part, side.turned, r);
+      set_end(piece.part, 1 - side.turned, step_r);
       piece.source = false;
       piece.left = region;
       piece.right = -1;
-      if (step->donor_edge < 0) break;
-      const Step* const beyond = steps + step->next;
-      const std::int32_t next_region = region_at(beyond->donor);
-      inner[parts] = InnerPart{};
-      InnerPart& part = inner[number_at(places[step->donor_edge], parts)];
-      const std::size_t from_right = static_cast<std::uint32_t>(step->sign) >> 31;
-      const std::size_t end = from_right ^ turned;  // 0: it enters T
-      const std::uint32_t cut = 1U << end;
-      twice |= part.cut & cut;
-      part.cut |= cut;
-      part.end[end] = step->s;
-      part.edge = step->donor_edge;
-      part.region[from_right] = region;
-      part.region[1 - from_right] = next_region;
-      region = next_region;
-      r = step->r;
-      step = beyond;
+      r = step.donor_edge < 0 ? 0U : step_r;
+      InnerPart& fresh = inner[parts.count()];
+      fresh.end[0].s = 0.0;
+      fresh.end[1].s = 1.0;
+      InnerPart& part = inner[parts.take(step.donor_edge)];
+      const auto from_right = static_cast<std::size_t>(step.from_right);
+      part.end[from_right ^ side.turned].s = step.s;  // 0: the donor edge enters T
+      part.end[from_right].region = region;
+      beyond = &part.end[from_right ^ 1].region;
+      part.end[0].edge = step.donor_edge;
     }
   }
-  group_count_ = static_cast<std::size_t>(regions);
-  list.donors.resize(donors_before + group_count_);
-  inner_count_ = static_cast<std::size_t>(parts);
-  bool in_order = twice == 0;
-  for (std::size_t i = 0; i < inner_count_; ++i)
-    in_order &= inner[i].end[1] - inner[i].end[0] >= contact_isolation;
-  return in_order;
+  list.donors.resize(list.donors.size() + regions_.count());
+  list.pieces.resize(list.pieces.size() + count);
+  inner_count_ = parts_.count();
 }
 
 // Along a donor edge the crossings with T's boundary enter and leave T in turn; false when they do
 // not, or are too near each other to tell.
 bool ElementOverlay::order_crossings(std::int32_t t) {
   marks_.clear();
-  for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
-    const auto first = records_[record_of(side.edge.value)].first_step;
-    const Step* step = &steps_[static_cast<std::size_t>(first)];
-    while (step->donor_edge >= 0) {
-      const auto part = inner_place_[static_cast<std::size_t>(step->donor_edge)].at;
-      marks_.push_back({step->donor_edge, step->s,
-                        static_cast<std::int8_t>(side.reversed ? -step->sign : step->sign),
-                        inner_[static_cast<std::size_t>(part)].region});
-      step = &steps_[static_cast<std::size_t>(step->next)];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const SideEdge& side = target_.element_edges[static_cast<std::size_t>(t)][k];
+    const Record& record = records_[own_[k]];
+    for (const WalkStep* step = first_step(record); step->donor_edge >= 0; step += record.stride) {
+      const auto& part = inner_[parts_.number(step->donor_edge)];
+      const std::int8_t sign = sign_of(*step);
+      marks_.push_back({step->donor_edge,
+                        step->s,
+                        side.reversed ? static_cast<std::int8_t>(-sign) : sign,
+                        {part.end[0].region, part.end[1].region}});
     }
   }
   std::sort(marks_.begin(), marks_.end(), [](const Mark& a, const Mark& b) {
@@ -319,50 +338,54 @@ bool ElementOverlay::order_crossings(std::int32_t t) {
       return false;
     const std::size_t end = mark.direction > 0 ? 0 : 1;
     if (end == 0 || first) {
-      inner_[inner_count_] = InnerPart{};
-      inner_[inner_count_].edge = mark.edge;
-      inner_[inner_count_].region = mark.region;
-      ++inner_count_;
+      inner_[inner_count_++] = {{InnerPart::End{0.0, mark.region[0], mark.edge},
+                                 InnerPart::End{1.0, mark.region[1], mark.edge}}};
     }
-    inner_[inner_count_ - 1].end[end] = mark.s;
-    inner_[inner_count_ - 1].cut |= 1U << end;
+    inner_[inner_count_ - 1].end[end].s = mark.s;
   }
   return true;
 }
 
+// The parts of donor edges that T's boundary cuts, and the vertices inside T that they end in;
+// false when one is cut more than once at an end, or its order is not plain.
+bool ElementOverlay::add_inner_parts(OverlayList& list) {
+  BoundaryPiece* const pieces = list.pieces.room(inner_count_);
+  if (walk_.size() < 2 * inner_count_) walk_.resize(4 * inner_count_);
+  std::int32_t* const inside = walk_.data();
+  std::size_t ends_inside = 0;
+  bool in_order = true;
+  for (std::size_t i = 0; i < inner_count_; ++i) {
+    const InnerPart::End &first = inner_[i].end[0], &last = inner_[i].end[1];
+    const double from = first.s, to = last.s;
+    pieces[i] = {{first.edge, from, to}, true, first.region, last.region};
+    in_order &= to - from >= contact_isolation;
+    const auto& ends = donor_.edge_vertex[static_cast<std::size_t>(first.edge)];
+    inside[ends_inside] = ends[0];
+    ends_inside += from > 0.0 ? 0U : 1U;
+    inside[ends_inside] = ends[1];
+    ends_inside += to < 1.0 ? 0U : 1U;
+  }
+  walk_.resize(ends_inside);
+  list.pieces.resize(list.pieces.size() + inner_count_);
+  return in_order && 2 * inner_count_ - ends_inside == crossing_count_;
+}
+
 // Edges without a crossing are inside T when they end in a vertex inside T; in a connected donor
 // mesh that is reached from a crossing, for T's boundary is all inside the donor.
-void ElementOverlay::add_inner_parts(OverlayList& list) {
-  walk_.resize(2 * inner_count_);
-  std::size_t count = 0;
-  const auto enter = [&](std::int32_t vertex, bool inside) {
-    std::uint32_t& stamp = inside_stamp_[static_cast<std::size_t>(vertex)];
-    walk_[count] = vertex;
-    count += static_cast<std::size_t>(int{inside} & int{stamp != now_});
-    stamp = inside ? now_ : stamp;
-  };
-  for (std::size_t i = 0; i < inner_count_; ++i) {
-    const InnerPart& part = inner_[i];
-    list.pieces.push_back(
-        {{part.edge, part.end[0], part.end[1]}, true, part.region[0], part.region[1]});
-    const auto& ends = donor_.edge_vertex[static_cast<std::size_t>(part.edge)];
-    enter(ends[0], (part.cut & 1U) == 0);
-    enter(ends[1], (part.cut & 2U) == 0);
-  }
-  walk_.resize(count);
+void ElementOverlay::add_inner_edges(OverlayList& list) {
   for (std::size_t k = 0; k < walk_.size(); ++k) {
+    std::uint32_t& seen = inside_stamp_[static_cast<std::size_t>(walk_[k])];
+    if (seen == now_) continue;
+    seen = now_;
     for (const std::int32_t e : search_.edges_at(walk_[k])) {
-      Place& place = inner_place_[static_cast<std::size_t>(e)];
-      if (place.stamp == now_) continue;
-      place.stamp = now_;
+      if (parts_.knows(e)) continue;
+      parts_.mark(e, 0);
       const auto& sides = donor_.edge_sides[static_cast<std::size_t>(e)];
       const std::int32_t left = region_of(sides[0], list), right = region_of(sides[1], list);
       list.pieces.push_back({{e, 0.0, 1.0}, true, left, right});
-      for (const std::int32_t v : donor_.edge_vertex[static_cast<std::size_t>(e)]) {
-        std::uint32_t& stamp = inside_stamp_[static_cast<std::size_t>(v)];
-        if (stamp != now_) walk_.push_back(v);
-        stamp = now_;
-      }
+      const auto& ends = donor_.edge_vertex[static_cast<std::size_t>(e)];
+      walk_.push_back(ends[0]);
+      walk_.push_back(ends[1]);
     }
   }
 }
@@ -371,12 +394,18 @@ bool ElementOverlay::walk_inside(std::int32_t t, OverlayList& list) {
   if (!search_.connected()) return false;
   const std::size_t donors_before = list.donors.size(), pieces_before = list.pieces.size();
   next_stamp();
-  if (!cross_boundary(t, list) && !order_crossings(t)) {
-    list.donors.resize(donors_before);
-    list.pieces.resize(pieces_before);
-    return false;
+  cross_boundary(t, list);
+  const std::size_t own_pieces = list.pieces.size();
+  if (!add_inner_parts(list)) {
+    list.pieces.resize(own_pieces);
+    if (!order_crossings(t)) {
+      list.donors.resize(donors_before);
+      list.pieces.resize(pieces_before);
+      return false;
+    }
+    add_inner_parts(list);
   }
-  add_inner_parts(list);
+  add_inner_edges(list);
   return true;
 }
 
@@ -385,14 +414,13 @@ void ElementOverlay::group_segments(OverlayList& list) {
   next_stamp();
   group_end_.clear();
   slots_.clear();
-  const std::size_t first_segment = list.segments.size();
   if (std::any_of(segments_.begin(), segments_.end(),
                   [](const Segment& s) { return s.donor == exterior; }))
     region_of(exterior, list);
   for (const Segment& segment : segments_) {
     const auto slot = static_cast<std::uint32_t>(region_of(segment.donor, list));
     slots_.push_back(slot);
-    if (group_end_.size() < group_count_) group_end_.resize(group_count_, 0);
+    if (group_end_.size() < regions_.count()) group_end_.resize(regions_.count(), 0);
     ++group_end_[slot];
   }
   std::uint32_t begin = 0;
@@ -401,10 +429,8 @@ void ElementOverlay::group_segments(OverlayList& list) {
     end = begin;
     begin += size;
   }
-  list.segments.resize(first_segment + segments_.size());
-  list.pieces.resize(list.pieces.size() + segments_.size());
-  Segment* const segments = list.segments.data() + first_segment;
-  BoundaryPiece* const pieces = list.pieces.data() + list.pieces.size() - segments_.size();
+  Segment* const segments = list.segments.room(segments_.size());
+  BoundaryPiece* const pieces = list.pieces.room(segments_.size());
   for (std::size_t i = 0; i < segments_.size(); ++i) {
     const Segment& segment = segments_[i];
     const std::uint32_t at = group_end_[slots_[i]]++;
@@ -413,6 +439,8 @@ void ElementOverlay::group_segments(OverlayList& list) {
     pieces[at] = {source ? segment.source : segment.target, source,
                   static_cast<std::int32_t>(slots_[i]), -1};
   }
+  list.segments.resize(list.segments.size() + segments_.size());
+  list.pieces.resize(list.pieces.size() + segments_.size());
 }
 
 }  // namespace bezel::detail

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "bezel/base/parallel.hpp"
+#include "bezel/numeric/box.hpp"
 #include "bezel/transfer/flat_sweep.hpp"
 #include "bezel/transfer/overlay.hpp"
 
@@ -99,13 +100,10 @@ std::vector<std::uint8_t> rim_donors(const OverlayMesh& donor, const OverlayMesh
   for (std::size_t e = 0; e < target.edge_sides.size(); ++e) {
     const auto& sides = target.edge_sides[e];
     if (sides[0] != exterior && sides[1] != exterior) continue;
-    Box2 box = target.edge_box(static_cast<std::int32_t>(e));
-    const double room = 1e-9 * box.diameter();
-    box.lo -= Vec2{{room, room}};
-    box.hi += Vec2{{room, room}};
+    const Box2 box = target.edge_box(static_cast<std::int32_t>(e));
     near.swap(found);
     if (near.empty()) near.push_back(search.towards(box.centre()));
-    search.query(box, near, memory, found);
+    search.query(grown(box, 1e-9 * box.diameter()), near, memory, found);
     for (const std::int32_t d : found) rim[static_cast<std::size_t>(d)] = 1;
   }
   return rim;

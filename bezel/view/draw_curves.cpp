@@ -9,6 +9,7 @@
 #include "bezel/base/atomic_file.hpp"
 #include "bezel/base/error.hpp"
 #include "bezel/geometry/curve_shape.hpp"
+#include "bezel/numeric/box.hpp"
 #include "bezel/view/canvas.hpp"
 #include "bezel/view/label_placer.hpp"
 #include "bezel/view/legend_rows.hpp"
@@ -85,9 +86,7 @@ Box2 shown_box(const CurvePicture& picture, bool control_polygons) {
     pad = size > 0.0 ? 0.5 * size : 1.0;
   }
   if (!(pad >= 1e-280)) throw InputError("the curves to draw spread over less than 1e-280");
-  curves.lo -= Vec2{{pad, pad}};
-  curves.hi += Vec2{{pad, pad}};
-  return curves;
+  return grown(curves, pad);
 }
 
 /// The part of a line inside a box.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "bezel/numeric/box.hpp"
+
 namespace {
 
 using bezel::Box2;
@@ -40,6 +42,23 @@ TEST(Vec, BoxGrowsAndTests) {
   EXPECT_TRUE(box.overlaps(other));
   box.include(other);
   EXPECT_EQ(box.lo, (Vec2{{1.0, 0.0}}));
+}
+
+TEST(Vec, AGrownBoxOverlapsWhatIsNear) {
+  Box2 box;
+  EXPECT_TRUE(grown(box, 1.0).empty());
+  box.include(Vec2{{1.0, 2.0}});
+  box.include(Vec2{{3.0, 7.0}});
+  const Box2 larger = grown(box, 0.25);
+  EXPECT_EQ(larger.lo, (Vec2{{0.75, 1.75}}));
+  EXPECT_EQ(larger.hi, (Vec2{{3.25, 7.25}}));
+  EXPECT_EQ(grown(box, 0.0).lo, box.lo);
+  EXPECT_EQ(grown(box, 0.0).hi, box.hi);
+  EXPECT_EQ(grown(box, -0.5).hi, (Vec2{{2.5, 6.5}}));
+  Box2 beside;
+  beside.include(Vec2{{3.2, 3.0}});
+  EXPECT_FALSE(box.overlaps(beside));
+  EXPECT_TRUE(larger.overlaps(beside));
 }
 
 }  // namespace

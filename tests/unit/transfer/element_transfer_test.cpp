@@ -51,7 +51,7 @@ TEST(ElementTransfer, APieceThatIsMissingIsNoticed) {
   pair.overlay.add(4, list, pair.counts);
   ASSERT_GT(list.pieces.size(), 4U);
   for (std::size_t left_out = 0; left_out < list.pieces.size(); ++left_out) {
-    std::vector<BoundaryPiece> broken = list.pieces;
+    std::vector<BoundaryPiece> broken(list.pieces.begin(), list.pieces.end());
     broken.erase(broken.begin() + static_cast<std::ptrdiff_t>(left_out));
     GivenList given;
     EXPECT_TRUE(element.process(4, {list.donors, broken, {}}, given, {}).inconsistent)
@@ -83,7 +83,7 @@ TEST(ElementTransfer, APieceThatIsMissingIsNoticedWhereJointsAreOpen) {
       GivenList given;
       ASSERT_FALSE(element.process(t, list[0], given, {}).inconsistent) << c.flat << " " << c.shear;
       for (std::size_t left_out = 0; left_out < list.segments.size(); ++left_out) {
-        std::vector<Segment> broken = list.segments;
+        std::vector<Segment> broken(list.segments.begin(), list.segments.end());
         const Segment& gone = list.segments[left_out];
         const Part& part = gone.target.edge < 0 ? gone.source : gone.target;
         if (std::abs(part.to - part.from) < 1e-5) continue;
@@ -107,7 +107,7 @@ TEST(ElementTransfer, APieceGivenToTheWrongElementIsNoticed) {
   OverlayList list;
   pair.overlay.add(4, list, pair.counts);
   ASSERT_GT(list.donors.size(), 1U);
-  std::vector<BoundaryPiece> broken = list.pieces;
+  std::vector<BoundaryPiece> broken(list.pieces.begin(), list.pieces.end());
   broken[0].left = broken[0].left == 0 ? 1 : 0;
   GivenList given;
   const ElementOutcome outcome = element.process(4, {list.donors, broken, {}}, given, {});

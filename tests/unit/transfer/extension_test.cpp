@@ -190,5 +190,25 @@ TEST(ThinDonors, PolynomialsComeBackInTheMiddleOfMeshes) {
   }
 }
 
+// A gap of 1e-10 of the element around its corner: donors that jump along it count as little.
+TEST(ThinGaps, AroundACornerHardlyChangeTheField) {
+  const auto donor = grid_mesh(4, 1, 1.0, test::same_place);
+  const auto space = Space::discontinuous(donor, 3, Basis::physical);
+  std::vector<double> c(space->coefficient_count());
+  RandomStream random("thin gaps", 1);
+  for (double& x : c) x = random.uniform(-1, 1);
+  const Field jumps("jumps", space, c);
+  TransferOptions options;
+  options.uncovered = Uncovered::extend;
+  const auto on = [&](double half) {
+    return transfer({&jumps, 1}, grid_mesh(3, 2, half, test::same_place), options);
+  };
+  const TransferResult inside = on(1.0), beyond = on(1.0 + 1e-10);
+  EXPECT_GT(beyond.report.uncovered_elements.size(), 0U);
+  const auto a = inside.fields[0].coefficients(), b = beyond.fields[0].coefficients();
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t n = 0; n < a.size(); ++n) EXPECT_NEAR(a[n], b[n], 1e-6) << n;
+}
+
 }  // namespace
 }  // namespace bezel

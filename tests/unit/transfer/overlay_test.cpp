@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bezel/bernstein/interval.hpp"
+#include "bezel/mesh/generate.hpp"
 #include "support/meshes.hpp"
 
 namespace bezel::detail {
@@ -111,6 +112,54 @@ TEST(ElementOverlay, AMeshOntoItselfHasNothingButItsEdges) {
     }
     EXPECT_EQ(counts.overlaps, static_cast<std::int64_t>(mesh->edge_count()));
     EXPECT_EQ(counts.max_joint_gap, 0.0);
+  }
+}
+
+std::vector<std::int32_t> donors_of(ElementOverlay& overlay, std::int32_t t) {
+  OverlayList list;
+  OverlayCounts counts;
+  overlay.add(t, list, counts);
+  return {list[0].donors.begin(), list[0].donors.end()};
+}
+
+// Vertices on donor edges, and donor vertices on target edges.
+TEST(ElementOverlay, AMeshAndItsRefinementsHaveWholeElementsInCommon) {
+  for (int g = 1; g <= 4; ++g) {
+    const auto coarse = test::grid_mesh(4, g, 1.0, test::bend(0.15, 0.12));
+    auto fine = std::make_shared<const TriangleMesh>(refine_uniform(*coarse));
+    for (std::size_t parts = 4; parts <= 16; parts *= 4) {
+      expect_closed(coarse, fine);
+      expect_closed(fine, coarse);
+      const OverlayMesh large(coarse, "donor", 1), small(fine, "target", 1);
+      const FrontSearch in_large(large), in_small(small);
+      ElementOverlay down(large, small, in_large), up(small, large, in_small);
+      down.begin_chunk();
+      up.begin_chunk();
+      std::vector<std::size_t> found(large.element_count(), 0);
+      for (std::int32_t t = 0; t < static_cast<std::int32_t>(small.element_count()); ++t) {
+        const auto donors = donors_of(down, t);
+        ASSERT_EQ(donors.size(), 1U) << "element " << t << " of degree " << g;
+        ASSERT_GE(donors[0], 0);
+        ++found[static_cast<std::size_t>(donors[0])];
+      }
+      for (std::size_t t = 0; t < found.size(); ++t) {
+        EXPECT_EQ(found[t], parts);
+        EXPECT_EQ(donors_of(up, static_cast<std::int32_t>(t)).size(), parts);
+      }
+      fine = std::make_shared<const TriangleMesh>(refine_uniform(*fine));
+    }
+  }
+}
+
+// Donor edges that end on a target edge's vertex, pass through one and go on inside an element.
+TEST(ElementOverlay, PiecesCloseWhereVerticesLieOnEdges) {
+  for (const auto& place : {test::PlaneMap(test::same_place), test::bend(0.15, 0.12)}) {
+    const auto donor = test::grid_mesh(4, 1, 1.0, test::same_place);
+    for (const int n : {2, 3, 6, 8}) {
+      expect_closed(donor, test::grid_mesh(n, 1, 1.0, place));
+      expect_closed(donor, test::grid_mesh(n, 1, 0.75, place));
+      expect_closed(test::grid_mesh(n, 1, 1.0, place), donor);
+    }
   }
 }
 

@@ -9,40 +9,14 @@
 #include "bezel/base/random.hpp"
 #include "bezel/transfer/operator_by.hpp"
 #include "support/fields.hpp"
+#include "support/in_shares.hpp"
 #include "support/mesh_pairs.hpp"
 
 namespace bezel::detail {
 namespace {
 
+using test::in_shares;
 using test::MeshPtr;
-
-/// Works on the shares one after the other, each from its message alone.
-Sweeper in_shares(std::size_t count) {
-  return [count](const OverlayMesh& donor, const OverlayMesh& target, const FrontSearch& search,
-                 std::span<Group> groups, const TransferOptions& options, const Progress&,
-                 const VisitBlocks& visit) {
-    const std::vector<Share> shares = split_work(donor, target, search, count, 1);
-    std::vector<ChunkResult> chunks(shares.back().first_chunk + shares.back().chunk_count);
-    ShareWriter writer(donor, target, search, groups, options, static_cast<bool>(visit));
-    for (const Share& share : shares) {
-      if (share.own.empty()) continue;
-      MessageWriter order;
-      writer.write(share, order);
-      const auto bytes = order.take();
-      MessageReader in(bytes);
-      MessageWriter answer;
-      const ShareReport work = work_on(in, 1, answer);
-      EXPECT_TRUE(in.at_end());
-      EXPECT_EQ(work.targets, static_cast<std::int64_t>(share.own.size()));
-      EXPECT_EQ(work.donors, static_cast<std::int64_t>(share.donors.size()));
-      const auto results = answer.take();
-      MessageReader out(results);
-      read_results(share, out, groups, chunks, visit);
-      EXPECT_TRUE(out.at_end());
-    }
-    return chunks;
-  };
-}
 
 void expect_same_report(const FieldReport& a, const FieldReport& b) {
   EXPECT_EQ(a.mass_after, b.mass_after);
@@ -221,8 +195,8 @@ TEST(Share, SameBitsWhereFieldsAreContinuedFarAway) {
 // The donors behind a rim of slivers serve beyond it.
 TEST(Share, SameBitsWhereBetterDonorsThanTheNearestServe) {
   const auto rim = [](double x) {
-    return std::abs(x) < 0.89 ? x / 0.9 * (1.0 - 1e-3)
-                              : std::copysign(1.0 - (1.0 - std::abs(x)) * 1e-2, x);
+    return std::abs(x) < 0.89 ? x / 0.9 * (1.0 - 1e-6)
+                              : std::copysign(1.0 - (1.0 - std::abs(x)) * 1e-5, x);
   };
   const MeshPtr donor = test::grid_mesh(20, 1, 1.0, [&](const Vec2& p) {
     return Vec2{{rim(p[0]), rim(p[1])}};
