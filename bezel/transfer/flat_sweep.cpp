@@ -1,6 +1,7 @@
 #include "bezel/transfer/flat_sweep.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "bezel/transfer/extension.hpp"
 
@@ -9,15 +10,38 @@ namespace {
 
 /// Diameter over width from which an element is thin: so many roundings are lost in it.
 constexpr double flat = 64.0;
-/// ... and up to which it is round in another plane, in which it may be this many of its diameters
-/// from the middle.
-constexpr double round = 16.0;
-constexpr double nearby = 256.0;
+/// Elements share a plane in cells of this many of their lengths and widths.
+constexpr double cell = 4.0;
 
 bool is_flat(const OverlayMesh& mesh, std::int32_t e) {
   const auto i = static_cast<std::size_t>(e);
   const double diameter = mesh.element_diameter[i];
   return diameter * diameter > flat * 2.0 * mesh.element_area[i];
+}
+
+/// A plane in which an element is round. It depends on the element alone, and elements near each
+/// other, of about the same direction and shape, have the same: slopes are rounded as far as
+/// roundness allows, and the centre is that of a cell.
+AreaMap shared_map(std::span<const Vec2> control) {
+  AreaMap map = round_map(control);
+  if (map.identity) return map;
+  const double step = 0.5 / (map.stretch * map.stretch);
+  map.slope = std::clamp(std::round(map.slope / step) * step, -1.0, 1.0);
+  Box2 box;
+  for (const Vec2& p : control) box.include(p);
+  const double length = std::ldexp(cell, std::ilogb(box.diameter()));
+  const double width = length / (map.stretch * map.stretch);
+  const Vec2& p = control[0];
+  const double u = map.turned ? p.y() : p.x(), v = map.turned ? -p.x() : p.y();
+  const double centre_u = std::round(u / length) * length;
+  const double centre_v = map.slope * centre_u + std::round((v - map.slope * u) / width) * width;
+  map.centre = map.turned ? Vec2{{-centre_v, centre_u}} : Vec2{{centre_u, centre_v}};
+  return map;
+}
+
+bool same(const AreaMap& a, const AreaMap& b) {
+  return a.centre == b.centre && a.slope == b.slope && a.stretch == b.stretch &&
+         a.turned == b.turned;
 }
 
 Box2 box_in(const AreaMap& map, std::span<const Vec2> control) {
@@ -84,33 +108,18 @@ FlatSweep::FlatSweep(const OverlayMesh& donor, const OverlayMesh& target, const 
       rim_(rim),
       with_blocks_(with_blocks) {}
 
-// The first element chooses the plane for all that are round there and not far off.
 std::vector<FlatSweep::Cluster> FlatSweep::clusters(std::span<const std::int32_t> elements) const {
   std::vector<Cluster> all;
   if (target_.rounding > 0.0) return all;  // round as it can be
-  std::vector<std::size_t> left;
-  for (std::size_t i = 0; i < elements.size(); ++i)
-    if (is_flat(target_, elements[i])) left.push_back(i);
-  while (!left.empty()) {
-    const AreaMap map = round_map(target_.element(elements[left.front()]));
-    if (map.identity) {
-      left.erase(left.begin());
-      continue;
-    }
-    Cluster& cluster = all.emplace_back();
-    cluster.map = map;
-    std::erase_if(left, [&](std::size_t i) {
-      const std::int32_t t = elements[i];
-      const Box2 box = box_in(map, target_.element(t));
-      const double size = box.diameter();
-      const double width = 2.0 * target_.element_area[static_cast<std::size_t>(t)] / size;
-      // The first one is taken in any case.
-      if (i != left.front() && (size > round * width || norm(box.centre()) > nearby * size))
-        return false;
-      cluster.share.own.push_back(t);
-      cluster.place.push_back(i);
-      return true;
-    });
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    if (!is_flat(target_, elements[i])) continue;
+    const AreaMap map = shared_map(target_.element(elements[i]));
+    if (map.identity) continue;
+    auto at = all.begin();
+    while (at != all.end() && !same(at->map, map)) ++at;
+    if (at == all.end()) at = all.insert(at, Cluster{map, {}, {}});
+    at->share.own.push_back(elements[i]);
+    at->place.push_back(i);
   }
   return all;
 }
