@@ -9,7 +9,7 @@ namespace bezel::detail {
 namespace {
 
 /// Diameter over width from which an element is thin: so many roundings are lost in it.
-constexpr double flat = 64.0;
+constexpr double flat = 256.0;
 /// Elements share a plane in cells of this many of their lengths and widths.
 constexpr double cell = 4.0;
 
