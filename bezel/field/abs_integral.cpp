@@ -105,13 +105,15 @@ double AbsIntegral::on_element(std::size_t e, const double* c, std::size_t strid
   std::span<const double> u = rule.u, v = rule.v;
   if (shape(e) == Shape::straight) {
     const std::array<Vec2, 3> corner = corners(mesh, id);
-    const double det = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    const double det = triangle_cross(corner[0], corner[1], corner[2]);
     if (d == 1) return linear(0.5 * det, integral, {c[0], c[stride], c[2 * stride]});
     std::fill(w.begin(), w.end(), det);
   } else {
-    rule.map(ElementMap(mesh, id).control(), x, y, w);
+    const ElementMap element(mesh, id);
+    const RoundControl round(element.control());
+    rule.map(round.points(), x, y, w);
     if (space_->basis() == Basis::physical) {
-      to_frame(space_->frame(id), x, y);
+      to_frame(moved(round.map(), space_->frame(id)), x, y);
       u = x;
       v = y;
     }

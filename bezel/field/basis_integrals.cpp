@@ -96,14 +96,17 @@ class ByBoundary {
         static_cast<std::size_t>(bernstein::triangle_size(Space::max_degree + 1));
     const TriangleMesh& mesh = *space_.mesh();
     std::array<Block, static_cast<std::size_t>(largest_size)> u, v;  // of control points
+    std::array<double, lanes> scale;
     for (std::size_t l = 0; l < lanes; ++l) {
       const ElementId id(first + std::min(l, count - 1));
-      const Frame& frame = space_.frame(id);
-      const auto nodes = mesh.nodes(id);
+      ElementMap map(mesh, id);
+      const AreaMap to_round = map.make_round();
+      const Frame frame = to_round.identity ? space_.frame(id) : moved(to_round, space_.frame(id));
+      scale[l] = 1.0 / cross(frame.gradient[1], frame.gradient[2]);
       for (const std::vector<int>& side : at_) {
         for (std::size_t m = 0; m + 1 < side.size(); ++m) {
           const std::size_t n = at(side[m]);
-          const Vec2 r = mesh.control(nodes[n]) - frame.centre;
+          const Vec2 r = map.control()[n] - frame.centre;
           u[n].set(l, 1.0 / 3.0 + dot(frame.gradient[1], r));
           v[n].set(l, 1.0 / 3.0 + dot(frame.gradient[2], r));
         }
@@ -114,8 +117,6 @@ class ByBoundary {
     std::fill_n(sums.begin(), size, Block::all(0.0));
     for (const std::vector<int>& side : at_) add_side(side, u.data(), v.data(), sums.data());
     for (std::size_t l = 0; l < count; ++l) {
-      const Frame& frame = space_.frame(ElementId(first + l));
-      const double scale = 1.0 / cross(frame.gradient[1], frame.gradient[2]);
       std::size_t n = 0;
       for (int k = 0; k <= d_; ++k) {
         // From the last of the row on.
@@ -124,7 +125,7 @@ class ByBoundary {
         for (int j = d_ - k; j >= 0; --j, ++n) {
           const std::size_t from = row + at(k) + at(j) + 1;  // rows of sums are one longer
           sum += factor_[from] * sums[from].get(l);
-          out[row + at(j)] = sum * scale;
+          out[row + at(j)] = sum * scale[l];
         }
       }
       out += n;
@@ -189,7 +190,8 @@ class ByJacobian {
           }
   }
   void operator()(std::size_t e, double* out) const {
-    const ElementMap map(*space_.mesh(), ElementId(e));
+    ElementMap map(*space_.mesh(), ElementId(e));
+    map.make_round();
     const JacobianTable& table = JacobianTable::of(g_);
     std::array<double, JacobianTable::max_room> room;
     std::array<double, JacobianTable::max_size> det;
@@ -222,7 +224,7 @@ void integrate_run(const Space& space, std::size_t from, std::size_t to, const B
   // All functions of a triangle's own barycentrics have one integral.
   const auto put_plain = [&](std::size_t e) {
     const std::array<Vec2, 3> c = corners(mesh, ElementId(e));
-    const double each = 0.5 * cross(c[1] - c[0], c[2] - c[0]) / static_cast<double>(size);
+    const double each = 0.5 * triangle_cross(c[0], c[1], c[2]) / static_cast<double>(size);
     for (std::size_t n = 0; n < size; ++n) out[n] = each;
     out += size;
   };

@@ -12,6 +12,7 @@
 #include "bezel/base/parallel.hpp"
 #include "bezel/bernstein/triangle.hpp"
 #include "bezel/field/space.hpp"
+#include "bezel/geometry/area_map.hpp"
 #include "bezel/geometry/triangle.hpp"
 #include "bezel/numeric/quadrature.hpp"
 
@@ -38,6 +39,14 @@ class ElementMap {
   ElementMap(const TriangleMesh& mesh, ElementId e) : degree_(mesh.degree()) {
     size_ = static_cast<std::size_t>(mesh.nodes_per_element());
     mesh.gather(e, {control_.data(), size_});
+  }
+  /// Moves the element to where it is round: integrals over it are the same there, and have all
+  /// their digits.
+  AreaMap make_round() {
+    const AreaMap map = round_map(control());
+    if (!map.identity)
+      for (Vec2& p : std::span(control_).first(size_)) p = map(p);
+    return map;
   }
   int degree() const { return degree_; }
   std::span<const Vec2> control() const { return {control_.data(), size_}; }
@@ -92,6 +101,16 @@ std::vector<int> degrees_of(const Space& space);
 inline std::array<Vec2, 3> corners(const TriangleMesh& mesh, ElementId e) {
   const auto n = mesh.nodes(e);
   return {mesh.control(n[0]), mesh.control(n[1]), mesh.control(n[2])};
+}
+
+/// A frame of the same polynomial in another plane.
+inline Frame moved(const AreaMap& map, const Frame& frame) {
+  Frame there;
+  there.centre = map(frame.centre);
+  // The first says nothing that the others do not, and its rounding need not be small there.
+  for (std::size_t k = 1; k < 3; ++k) there.gradient[k] = map.gradient(frame.gradient[k]);
+  there.gradient[0] = -(there.gradient[1] + there.gradient[2]);
+  return there;
 }
 
 /// Barycentrics 1 and 2 of points of the plane, in place.

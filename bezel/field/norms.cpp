@@ -26,8 +26,9 @@ std::size_t at(int i) {
 }
 
 /// Weights of a rule times the Jacobian determinant.
-std::vector<double> measure(const ElementMap& map, std::span<const Lambda> lambda,
+std::vector<double> measure(ElementMap map, std::span<const Lambda> lambda,
                             std::span<const double> weight) {
+  map.make_round();
   std::vector<double> w(weight.size());
   for (std::size_t q = 0; q < w.size(); ++q) w[q] = weight[q] * map.derivatives(lambda[q]).det();
   return w;

@@ -122,10 +122,11 @@ Samples take_samples(const Space& space, ElementId e, const TriangleRule& rule,
   Samples s{basis_values(space, e, map, rule.lambda), Eigen::VectorXd(index(points)),
             MatrixXd(index(points), index(components.size()))};
   std::vector<Vec2> x(points);
+  ElementMap round = map;
+  round.make_round();
   for (std::size_t q = 0; q < points; ++q) {
-    const field_detail::MapPoint at = map.derivatives(rule.lambda[q]);
-    x[q] = at.x;
-    s.weight(index(q)) = rule.weight[q] * at.det();
+    x[q] = map(rule.lambda[q]);
+    s.weight(index(q)) = rule.weight[q] * round.derivatives(rule.lambda[q]).det();
   }
   for (std::size_t k = 0; k < components.size(); ++k)
     field_detail::evaluate_formula(components[k], x, {s.values.col(index(k)).data(), points}, e);

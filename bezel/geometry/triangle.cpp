@@ -6,6 +6,7 @@
 #include <string>
 
 #include "bezel/base/error.hpp"
+#include "bezel/geometry/area_map.hpp"
 #include "bezel/geometry/jacobian_kernel.hpp"
 #include "bezel/geometry/triangle_check.hpp"
 #include "bezel/geometry/triangle_kernel.hpp"
@@ -42,6 +43,8 @@ using geometry_kernel::map_gradient;
 
 std::vector<double> jacobian_determinant(int g, std::span<const Vec2> control) {
   check_triangle(g, control, bernstein::max_triangle_degree);
+  const RoundControl round(control);
+  control = round.points();
   using geometry_kernel::JacobianTable;
   const auto by_table = [&](const JacobianTable& table) {
     std::vector<double> room(4 * table.steps.size()), det(table.scale.size());
@@ -129,6 +132,9 @@ const SideTable& side_table(int g) {
 
 double area(int g, std::span<const Vec2> control) {
   check_triangle(g, control, bernstein::max_triangle_degree);
+  if (g == 1) return 0.5 * triangle_cross(control[0], control[1], control[2]);
+  const RoundControl round(control);
+  control = round.points();
   // Green: area = 1/2 closed integral of x dy - y dx, each side exact by the Bernstein product
   // formula integral of B_i^g B_j^(g-1) = C(g,i) C(g-1,j) / (C(2g-1,i+j) 2g). Relative to corner 0,
   // so that a triangle far from the origin loses nothing; side 0 and 2 start or end there.

@@ -108,7 +108,8 @@ void invert(int g, std::span<const Vec2> control, std::span<const Vec2> p,
             std::span<const Lambda> start, std::span<InverseResult> out);
 
 /// Signed area (positive for counter-clockwise sides), exact up to rounding, by Green's theorem
-/// along the sides; relative to corner 0, so a triangle far from the origin loses nothing.
+/// along the sides; relative to corner 0, so a triangle far from the origin loses nothing, and
+/// where the triangle is round (AreaMap), so a thin one loses nothing either.
 double area(int g, std::span<const Vec2> control);
 /// Integral of x^a y^b over the triangle, exact up to rounding, by Green's theorem with a Gauss
 /// rule per side.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "bezel/geometry/area_map.hpp"
 #include "bezel/geometry/jacobian_kernel.hpp"
 #include "bezel/geometry/triangle.hpp"
 #include "bezel/geometry/triangle_check.hpp"
@@ -43,9 +44,13 @@ double widest_step(const JacobianTable& table, std::span<const Vec2> control) {
 ValidityResult check_validity(int g, std::span<const Vec2> control) {
   geometry_kernel::check_triangle(g, control, bernstein::max_triangle_degree);
   if (g == 1) {
-    const double det = cross_accurate(control[1] - control[0], control[2] - control[0]);
+    const Vec2 a = control[1] - control[0], b = control[2] - control[0];
+    const double det =
+        is_thin(a, b) ? triangle_cross(control[0], control[1], control[2]) : cross_accurate(a, b);
     return {det > 0 ? Validity::valid : Validity::inverted, {1.0 / 3, 1.0 / 3, 1.0 / 3}, det};
   }
+  const RoundControl round(control);
+  control = round.points();
   const int d = 2 * (g - 1);
   const auto n = static_cast<std::size_t>(bernstein::triangle_size(d));
   const bool has_table = g <= JacobianTable::max_kept;

@@ -6,7 +6,7 @@
 #include "bezel/base/error.hpp"
 #include "bezel/base/parallel.hpp"
 #include "bezel/bernstein/triangle.hpp"
-#include "bezel/geometry/triangle.hpp"
+#include "bezel/geometry/area_map.hpp"
 #include "bezel/transfer/accumulate.hpp"
 #include "bezel/transfer/mass_rule.hpp"
 
@@ -151,11 +151,12 @@ void ElementFactors::factorise(const Space& space, const Field* weight, int thre
     std::vector<Vec2> control(static_cast<std::size_t>(mesh.nodes_per_element()));
     for (std::size_t e = from; e < to; ++e) {
       mesh.gather(ElementId(e), control);
+      const RoundControl round(control);
       if (weight) weight->evaluate(ElementId(e), lambda, factor);
       std::fill(matrix.begin(), matrix.end(), 0.0);
       double* integral = integrals_.data() + e * n;
       for (std::size_t q = 0; q < points; ++q) {
-        const double w = rule.weight[q] * mass_point(rule, control, q).det * factor[q];
+        const double w = rule.weight[q] * mass_point(rule, round.points(), q).det * factor[q];
         const double* at = phi.data() + q * n;
         for (std::size_t i = 0; i < n; ++i) {
           const double wi = w * at[i];

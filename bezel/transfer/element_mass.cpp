@@ -28,14 +28,17 @@ ElementMass::ElementMass(std::shared_ptr<const Space> space, int other_degree, i
 void ElementMass::prepare(ElementId e, Element& out) const {
   const int p = space_->degree(e);
   const auto n = static_cast<std::size_t>(bernstein::triangle_size(p));
-  const ElementMap map(*space_->mesh(), e);
+  ElementMap map(*space_->mesh(), e);
+  const AreaMap to_round = map.make_round();
+  const bool physical = space_->basis() == Basis::physical;
+  const Frame frame = physical ? field_detail::moved(to_round, space_->frame(e)) : Frame();
   const TriangleRule& rule = rule_[static_cast<std::size_t>(p)];
   out.points = rule.lambda;
   out.measure.resize(rule.weight.size());
   out.basis.resize(rule.weight.size() * n);
   for (std::size_t q = 0; q < rule.weight.size(); ++q) {
     const Lambda& lambda = rule.lambda[q];
-    const Lambda place = field_detail::own_lambda(*space_, e, map, lambda);
+    const Lambda place = physical ? frame.lambda(map(lambda)) : lambda;
     basis_at(p, place[1], place[2], out.basis.data() + q * n);
     out.measure[q] = rule.weight[q] * map.derivatives(lambda).det();
   }

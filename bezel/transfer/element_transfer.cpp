@@ -12,9 +12,6 @@
 namespace bezel::detail {
 namespace {
 
-/// Gaps below this fraction of an element are rounding and are extended whatever the policy.
-constexpr double silent_gap = 1e-10;
-
 /// How large powers of barycentrics may be at points of a rule, in and around a region.
 constexpr double steepest_value = 256.0;
 
@@ -478,7 +475,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
       const double area = area_[k];
       const std::span<double> here(region_mass_.data() + k * nc, nc);
       if (d == exterior) {
-        const bool silent = std::abs(area) <= silent_gap * own_area;
+        const bool silent = std::abs(area) <= silent_gap(target_, t) * own_area;
         if (!(silent || policy_ == Uncovered::extend)) continue;
         if (i == 0) extended += area;
         extended_[i] = 1;
@@ -552,7 +549,9 @@ void ElementTransfer::finish_groups(std::int32_t t, double integrated, bool batc
     if (finish_straight(i, t, mass, integrated, result, outcome)) continue;
     if (have_moments_[i] != 0) moments_to_powers(i, t);
     std::span<const double> whole;
-    if (outcome.uncovered_area == 0.0 && batch) whole = whole_[i];
+    // Around open joints in a plane that makes donors long, sums are no sharper than those are.
+    const bool blurred = loose_ && target_.rounding > 0.0;
+    if (outcome.uncovered_area == 0.0 && batch && !blurred) whole = whole_[i];
     finish(groups_[i], t, sums_[i], whole, mass, base_[i], integrated, result, outcome);
   }
   if (timed) {

@@ -2,6 +2,7 @@
 // Internal: a mesh laid out for the overlay: geometry of edges and elements in flat arrays, boxes,
 // search.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -38,6 +39,9 @@ struct OverlayMesh {
   std::vector<double> element_area;      ///< exact up to rounding
   std::vector<double> element_diameter;  ///< of the boxes
   Box2 box;
+  /// Of a mesh that was moved to another plane (flat_sweep.hpp): by how much the rounding of the
+  /// coordinates that it came with moves points here. Else 0.
+  double rounding = 0;
   std::vector<std::int32_t> numbers;  ///< of a part of a mesh: the elements' numbers in the whole
 
   std::int32_t number_of(std::int32_t e) const {
@@ -82,6 +86,13 @@ struct OverlayMesh {
 
   std::vector<CurveCache> edge_cache_;  // of curved edges
 };
+
+/// Gaps in what covers an element, up to this fraction of it, are rounding and are extended
+/// whatever the policy.
+inline double silent_gap(const OverlayMesh& mesh, std::int32_t e) {
+  constexpr double usual = 1e-10, roundings = 32.0;  // of boundaries of both meshes
+  return std::max(usual, roundings * mesh.rounding / mesh.element_width(e));
+}
 
 /// Finds the elements whose boxes overlap a box by walking over the adjacency graph from a known
 /// element (an advancing front), and asks a tree only where the front meets the mesh's boundary or

@@ -1,9 +1,13 @@
 #include "bezel/transfer/share.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <memory>
 #include <utility>
+
+#include "bezel/field/element_kernel.hpp"
+#include "bezel/field/integrals.hpp"
 
 namespace bezel::detail {
 namespace {
@@ -23,7 +27,7 @@ void forget_places(std::span<const std::int32_t> numbers, std::span<std::int32_t
 
 /// @param places  of the nodes, all -1 before and after
 void write_mesh(const TriangleMesh& mesh, std::span<const std::int32_t> elements,
-                std::span<std::int32_t> places, MessageWriter& out) {
+                const AreaMap& map, std::span<std::int32_t> places, MessageWriter& out) {
   std::vector<std::int32_t> connectivity;
   std::vector<std::int32_t> nodes;
   for (const std::int32_t e : elements) {
@@ -40,44 +44,73 @@ void write_mesh(const TriangleMesh& mesh, std::span<const std::int32_t> elements
   forget_places(nodes, places);
   std::vector<Vec2> control;
   control.reserve(nodes.size());
-  for (const std::int32_t n : nodes) control.push_back(mesh.control(NodeId(n)));
+  double largest = 0.0;
+  for (const std::int32_t n : nodes) {
+    const Vec2& p = mesh.control(NodeId(n));
+    largest = std::max({largest, std::abs(p.x()), std::abs(p.y())});
+    control.push_back(map(p));
+  }
   out.value(mesh.degree());
+  out.value(map.rounding(largest));
   out.list(control);
   out.list(connectivity);
   out.list(elements);
 }
 
 struct MeshPart {
+  double rounding;
   std::shared_ptr<const TriangleMesh> mesh;
   std::vector<std::int32_t> numbers;
 };
 
 MeshPart read_mesh(MessageReader& in) {
   const int degree = in.value<int>();
+  const auto rounding = in.value<double>();
   std::vector<Vec2> control = in.list<Vec2>();
   std::vector<NodeId> nodes;
   for (const std::int32_t n : in.list<std::int32_t>()) nodes.emplace_back(n);
   MeshPart part;
+  part.rounding = rounding;
   part.mesh = std::make_shared<const TriangleMesh>(degree, std::move(control), std::move(nodes));
   part.numbers = in.list<std::int32_t>();
   return part;
 }
 
-void write_group(const Share& share, const Group& g, MessageWriter& out) {
+/// The frames of a physical basis. Those of straight triangles that are their own frames up to the
+/// rounding of coordinates are so in the other plane.
+std::vector<Frame> frames_in(const AreaMap& map, const Space& space, const OverlayMesh& mesh,
+                             std::span<const std::int32_t> elements) {
+  std::vector<Frame> frames;
+  if (space.basis() != Basis::physical) return frames;
+  for (const std::int32_t e : elements) {
+    const Frame& frame = space.frame(ElementId(e));
+    std::array<Vec2, 3> corners = mesh.corners(e);
+    if (map.identity) {
+      frames.push_back(frame);
+    } else if (mesh.degree == 1 && space.is_own_frame(ElementId(e))) {
+      std::transform(corners.begin(), corners.end(), corners.begin(), map);
+      frames.push_back(affine_frame(corners));
+    } else {
+      frames.push_back(field_detail::moved(map, frame));
+    }
+  }
+  return frames;
+}
+
+void write_group(const Share& share, const Group& g, const OverlayMesh& donor_mesh,
+                 const OverlayMesh& target_mesh, const AreaMap& map, MessageWriter& out) {
   const Space& donor = *g.donor_space;
   std::vector<int> degrees;
-  std::vector<Frame> frames;
-  for (const std::int32_t d : share.donors) {
-    degrees.push_back(donor.degree(ElementId(d)));
-    if (donor.basis() == Basis::physical) frames.push_back(donor.frame(ElementId(d)));
-  }
+  for (const std::int32_t d : share.donors) degrees.push_back(donor.degree(ElementId(d)));
   out.value(g.of_basis());
   out.value(g.components);
   out.value(g.donor_degree);
   out.value(donor.basis());
   out.list(degrees);
-  out.list(frames);
+  out.list(frames_in(map, donor, donor_mesh, share.donors));
   out.value(g.target_space->basis());
+  out.list(map.identity ? std::vector<Frame>()
+                        : frames_in(map, *g.target_space, target_mesh, share.targets));
   out.value(g.target_space->uniform_degree());
   if (g.of_basis()) return;
   const auto nc = static_cast<std::size_t>(g.components);
@@ -102,11 +135,17 @@ Group read_group(const OverlayMesh& donor, const OverlayMesh& target, int thread
   std::vector<int> degrees = in.list<int>();
   std::vector<Frame> frames = in.list<Frame>();
   const auto target_basis = in.value<Basis>();
+  std::vector<Frame> target_frames = in.list<Frame>();
   const int target_degree = in.value<int>();
   auto donor_space = basis == Basis::physical
                          ? Space::discontinuous(donor.mesh, std::move(degrees), std::move(frames))
                          : Space::discontinuous(donor.mesh, std::move(degrees), basis);
-  auto target_space = Space::discontinuous(target.mesh, target_degree, target_basis);
+  auto target_space =
+      target_frames.empty()
+          ? Space::discontinuous(target.mesh, target_degree, target_basis)
+          : Space::discontinuous(target.mesh,
+                                 std::vector<int>(target.element_count(), target_degree),
+                                 std::move(target_frames));
   if (of_basis) {
     return Group(donor, target, std::move(donor_space), std::move(target_space), donor_degree,
                  threads);
@@ -217,35 +256,38 @@ double Stopwatch::cpu_seconds() const {
 
 ShareWriter::ShareWriter(const OverlayMesh& donor, const OverlayMesh& target,
                          const FrontSearch& search, std::span<const Group> groups,
-                         const TransferOptions& options, bool blocks)
+                         const TransferOptions& options, bool blocks,
+                         std::span<const std::uint8_t> rim)
     : donor_(donor),
       target_(target),
       search_(search),
       groups_(groups),
       options_(options),
       blocks_(blocks),
-      rim_(rim_donors(donor, target, search)),
+      rim_(rim.begin(), rim.end()),
       donor_place_(donor.mesh->node_count(), -1),
       target_place_(target.mesh->node_count(), -1),
-      element_place_(target.element_count(), -1) {}
+      element_place_(target.element_count(), -1) {
+  if (rim.empty()) rim_ = rim_donors(donor, target, search);
+}
 
-void ShareWriter::write(const Share& share, MessageWriter& out) {
+void ShareWriter::write(const Share& share, MessageWriter& out, const AreaMap& map) {
   out.value(blocks_);
   out.value(options_.uncovered);
   out.value(options_.conserve);
-  write_mesh(*donor_.mesh, share.donors, donor_place_, out);
+  write_mesh(*donor_.mesh, share.donors, map, donor_place_, out);
   std::vector<std::uint8_t> rim;
   for (const std::int32_t d : share.donors) rim.push_back(rim_[place(d)]);
   out.list(rim);
   out.value(search_.connected());
-  write_mesh(*target_.mesh, share.targets, target_place_, out);
+  write_mesh(*target_.mesh, share.targets, map, target_place_, out);
   note_places(share.targets, element_place_);
   std::vector<std::int32_t> own;
   for (const std::int32_t t : share.own) own.push_back(element_place_[place(t)]);
   forget_places(share.targets, element_place_);
   out.list(own);
   out.value(static_cast<std::uint64_t>(groups_.size()));
-  for (const Group& g : groups_) write_group(share, g, out);
+  for (const Group& g : groups_) write_group(share, g, donor_, target_, map, out);
 }
 
 ShareReport work_on(MessageReader& in, int threads, MessageWriter& out) {
@@ -267,8 +309,10 @@ ShareReport work_on(MessageReader& in, int threads, MessageWriter& out) {
   std::vector<Group> groups;
   OverlayMesh donor(std::move(donor_part.mesh), "donor", threads);
   donor.numbers = std::move(donor_part.numbers);
+  donor.rounding = donor_part.rounding;
   OverlayMesh target(std::move(target_part.mesh), "target", threads);
   target.numbers = std::move(target_part.numbers);
+  target.rounding = target_part.rounding;
   for (std::uint64_t i = 0; i < group_count; ++i)
     groups.push_back(read_group(donor, target, threads, in));
   const FrontSearch search(donor, connected);

@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "bezel/geometry/area_map.hpp"
 #include "bezel/transfer/distributed.hpp"
 #include "bezel/transfer/group.hpp"
 #include "bezel/transfer/message.hpp"
@@ -46,9 +47,12 @@ class ShareWriter {
  public:
   /// All must outlive the writer.
   /// @param blocks  whether the blocks of the elements are wanted
+  /// @param rim     rim_donors() of the whole meshes; empty: found here
   ShareWriter(const OverlayMesh& donor, const OverlayMesh& target, const FrontSearch& search,
-              std::span<const Group> groups, const TransferOptions& options, bool blocks);
-  void write(const Share& share, MessageWriter& out);
+              std::span<const Group> groups, const TransferOptions& options, bool blocks,
+              std::span<const std::uint8_t> rim = {});
+  /// @param map  to the plane in which the work is done
+  void write(const Share& share, MessageWriter& out, const AreaMap& map = {});
 
  private:
   const OverlayMesh& donor_;

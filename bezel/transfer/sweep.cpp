@@ -12,6 +12,7 @@
 
 #include "bezel/base/parallel.hpp"
 #include "bezel/numeric/box.hpp"
+#include "bezel/transfer/flat_sweep.hpp"
 #include "bezel/transfer/overlay.hpp"
 
 namespace bezel::detail {
@@ -19,8 +20,6 @@ namespace {
 
 using clock = std::chrono::steady_clock;
 
-/// Uncovered parts below this fraction of an element are rounding.
-constexpr double silent_gap = 1e-10;
 /// Donor area outside the target, and target area without donor for Conserve::total, below this
 /// fraction of the element is rounding of the sums.
 constexpr double outside_rounding = 3e-14;
@@ -31,10 +30,18 @@ double seconds_since(clock::time_point start) {
 
 struct Worker {
   Worker(const OverlayMesh& donor, const OverlayMesh& target, const FrontSearch& search,
-         std::span<Group> groups, Uncovered policy)
-      : overlay(donor, target, search), element(donor, target, search, groups, policy) {}
+         std::span<Group> groups, const TransferOptions& options, std::span<const std::uint8_t> rim,
+         bool with_blocks)
+      : overlay(donor, target, search),
+        element(donor, target, search, groups, options.uncovered),
+        flat(donor, target, search, groups, options, rim, with_blocks) {
+    element.keep_masses_of(rim);
+  }
   ElementOverlay overlay;
   ElementTransfer element;
+  FlatSweep flat;
+  std::vector<std::uint8_t> done;  // by place in a chunk: worked on by `flat`
+  std::vector<std::int32_t> others;
   OverlayList overlays;  // of a chunk's elements
 
   void find_overlays(std::span<const std::int32_t> elements, OverlayCounts& counts) {
@@ -111,45 +118,56 @@ std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayM
   const std::size_t components = component_count(groups);
   const std::size_t chunks = (elements.size() + chunk_size - 1) / chunk_size;
   std::vector<ChunkResult> results(chunks);
-  WorkerPool pool(
-      [&] { return std::make_unique<Worker>(donor, target, search, groups, options.uncovered); });
   std::vector<std::uint8_t> rim(part_rim.begin(), part_rim.end());
   if (donor.numbers.empty()) {
     // Without fields there are no masses to keep.
     rim = components > 0 ? rim_donors(donor, target, search)
                          : std::vector<std::uint8_t>(donor.element_count(), 0);
   }
+  const bool with_blocks = static_cast<bool>(visit);
+  WorkerPool pool([&] {
+    return std::make_unique<Worker>(donor, target, search, groups, options, rim, with_blocks);
+  });
   std::mutex progress_mutex;
   std::size_t chunks_done = 0;
   parallel_for(
       chunks,
       [&](std::size_t chunk) {
         auto worker = pool.take();
-        worker->element.keep_masses_of(rim);
         ChunkResult& result = results[chunk];
         result.made.assign(components, 0.0);
         std::vector<double> made_here;
         ElementBlocks blocks;
         const std::size_t begin = chunk * chunk_size,
                           end = std::min(elements.size(), (chunk + 1) * chunk_size);
+        const std::span<const std::int32_t> own = elements.subspan(begin, end - begin);
+        worker->flat.work_on(own, worker->done, result);
+        std::vector<std::int32_t>& others = worker->others;
+        others.clear();
+        for (std::size_t i = 0; i < own.size(); ++i)
+          if (worker->done[i] == 0) others.push_back(own[i]);
         const auto t0 = clock::now();
-        worker->find_overlays(elements.subspan(begin, end - begin), result.counts);
+        worker->find_overlays(others, result.counts);
         const auto t1 = clock::now();
-        const std::span<const std::int32_t> chunk_elements = elements.subspan(begin, end - begin);
-        std::size_t together_begin = begin, together_end = begin;
+        std::size_t next = 0, together_begin = 0, together_end = 0;  // among the others
+        double solve = 0.0;
         for (std::size_t i = begin; i < end; ++i) {
           const std::int32_t t = elements[i];
-          const ElementPieces own = worker->overlays[i - begin];
-          made_here.assign(components, 0.0);
-          if (i >= together_end && !visit) {
-            together_begin = i;
-            together_end =
-                i + worker->element.begin_together(chunk_elements, worker->overlays, i - begin);
+          if (worker->done[i - begin] != 0) {
+            if (visit) visit(i, t, worker->flat.block_of(i - begin));
+            continue;
           }
-          const bool ready = i < together_end && worker->element.together(i - together_begin);
+          const std::size_t at = next++;
+          const ElementPieces pieces = worker->overlays[at];
+          made_here.assign(components, 0.0);
+          if (at >= together_end && !visit) {
+            together_begin = at;
+            together_end = at + worker->element.begin_together(others, worker->overlays, at);
+          }
+          const bool ready = at < together_end && worker->element.together(at - together_begin);
           const ElementOutcome outcome =
-              ready ? worker->element.take(i - together_begin, t, own, result.given)
-                    : worker->element.process(t, own, result.given, made_here,
+              ready ? worker->element.take(at - together_begin, t, pieces, result.given)
+                    : worker->element.process(t, pieces, result.given, made_here,
                                               visit ? &blocks : nullptr);
           if (visit) visit(i, t, blocks);
           for (std::size_t c = 0; c < components; ++c) result.made[c] += made_here[c];
@@ -157,14 +175,14 @@ std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayM
               outcome.uncovered_area >
                   outside_rounding * target.element_area[static_cast<std::size_t>(t)])
             result.element_made.add(t, made_here);
-          result.solve += outcome.solve_seconds;
+          solve += outcome.solve_seconds;
           result.counts.pairs += outcome.pairs;
           result.max_partition_residual =
               std::max(result.max_partition_residual, outcome.partition_residual);
           result.max_joint_gap = std::max(result.max_joint_gap, outcome.max_joint_gap);
           result.max_mass_defect = std::max(result.max_mass_defect, outcome.max_mass_defect);
           if (outcome.uncovered_area >
-              silent_gap * target.element_area[static_cast<std::size_t>(t)]) {
+              silent_gap(target, t) * target.element_area[static_cast<std::size_t>(t)]) {
             result.uncovered.push_back({ElementId(t), outcome.uncovered_area});
           }
           result.uncovered_area += outcome.uncovered_area;
@@ -174,11 +192,12 @@ std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayM
             if (result.inconsistent < 0) result.inconsistent = t;
           }
         }
-        result.overlay = std::chrono::duration<double>(t1 - t0).count();
+        result.overlay += std::chrono::duration<double>(t1 - t0).count();
         // The solves are timed in a sample of the elements: more than all the time in a bad one.
         const double elements_took = seconds_since(t1);
-        result.solve = std::min(result.solve, elements_took);
-        result.integrate = elements_took - result.solve;
+        solve = std::min(solve, elements_took);
+        result.solve += solve;
+        result.integrate += elements_took - solve;
         pool.give(std::move(worker));
         if (progress) {
           const std::lock_guard lock(progress_mutex);

@@ -28,6 +28,15 @@ double size_of(const Field& field) {
   return std::max(std::abs(range.lo), std::abs(range.hi));
 }
 
+/// By how much rounding of the frames of thin elements moves points in barycentric coordinates.
+double frame_rounding(const Space& space) {
+  double largest = 0.0;
+  for (const Frame& f : space.frames()) {
+    for (const Vec2& g : f.gradient) largest = std::max(largest, norm(g) * norm(f.centre));
+  }
+  return 0x1p-52 * largest;
+}
+
 std::vector<double> component(std::span<const double> interleaved, std::size_t components,
                               std::size_t c) {
   std::vector<double> out(interleaved.size() / components);
@@ -43,7 +52,8 @@ int weight_degree(const Formula& weight, const std::shared_ptr<const TriangleMes
   for (int degree = 0; degree <= max_weight_degree; ++degree) {
     const Field field = projected(weight, degree, mesh, threads);
     misses = error_norms(field, {&weight, 1}, 8, threads).max;
-    if (misses <= polynomial_rounding * size_of(field)) return degree;
+    const double rounding = std::max(polynomial_rounding, frame_rounding(field.space()));
+    if (misses <= rounding * size_of(field)) return degree;
   }
   throw InputError(fmt::format(
       "weight '{}' is no polynomial of degree 0 to {} on the {} mesh: the nearest one misses it by "

@@ -95,6 +95,24 @@ const MeshPtr& bent_grid(int g) {
   return grids.at(static_cast<std::size_t>(g - 1));
 }
 
+// Each process finds the planes in which thin elements are round by itself.
+TEST(Share, ThinElementsGiveTheBitsOfTheWhole) {
+  for (const int g : {1, 2}) {
+    const auto flat = [&](const MeshPtr& mesh) {
+      return test::with_control(mesh, [](const Vec2& p, std::size_t) {
+        return Vec2{{p[0] - 1e-5 * p[1], 0.3 * p[0] + 1e-5 * p[1]}};
+      });
+    };
+    const MeshPtr donor = flat(bent_grid(g));
+    const MeshPtr target = flat(test::grid_mesh(g == 1 ? 24 : 16, g, 0.9, test::bend(-0.1, 0.1)));
+    for (const Basis basis : {Basis::reference, Basis::physical}) {
+      TransferOptions options;
+      options.threads = 1;
+      check(std::vector<Field>{wave(Space::discontinuous(donor, 1, basis))}, target, options, 2);
+    }
+  }
+}
+
 TEST(Share, SplitTakesEveryElementOnceAndAboutTheSameWork) {
   const OverlayMesh donor(bent_grid(1), "donor", 1);
   const OverlayMesh target(turned(test::grid_mesh(40, 1, 1.0, test::same_place), 0.4, 0.7, {}),
