@@ -178,6 +178,7 @@ ElementOutcome ElementTransfer::take(std::size_t k, std::int32_t t, const Elemen
     return outcome;
   }
   masses_.clear();
+  loose_ = false;  // what process() left is another element's
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     const Group& g = groups_[i];
     const ElementSums& sums = together_sums_[i];
