@@ -98,7 +98,7 @@ HWY_INLINE void add_rows(const ElementBatch& batch, std::size_t first, std::size
 template <int P>
 void add_components(const ElementBatch& batch, std::size_t first, std::size_t count,
                     const RegionLanes<P>& place, std::size_t components, const double* base,
-                    std::size_t base_stride, ElementSums& result) {
+                    ElementSums& result) {
   constexpr auto size = static_cast<std::size_t>(RegionLanes<P>::size);
   std::array<RegionNumbers<P>, lanes> numbers;
   for (std::size_t l = 0; l < count; ++l) numbers[l] = RegionNumbers<P>(place, l);
@@ -111,7 +111,7 @@ void add_components(const ElementBatch& batch, std::size_t first, std::size_t co
     double* const mass = result.masses.data() + e * result.mass_stride;
     for (std::size_t c = 0; c < components; c += lanes) {
       const std::size_t some = std::min(lanes, components - c);
-      const Lanes off = load(base + e * base_stride + c);
+      const Lanes off = load(base + e * components + c);
       Lanes total[size], total_mass = load(mass + c);
 #pragma GCC unroll 10
       for (std::size_t n = 0; n < size; ++n) total[n] = load(product + n * components + c);
@@ -132,7 +132,7 @@ void add_components(const ElementBatch& batch, std::size_t first, std::size_t co
 
 template <int P, bool curved>
 void add_elements_of(const ElementBatch& batch, std::size_t components, const double* base,
-                     std::size_t base_stride, ElementSums& result) {
+                     ElementSums& result) {
   using Row = RowOf<P>;
   constexpr std::size_t size = Row::size, donor_rows = padded_to_lanes(size);
   result.width = Row::width;
@@ -169,7 +169,7 @@ void add_elements_of(const ElementBatch& batch, std::size_t components, const do
       multiply<P>(placed.moments, f, rows);
       rows[Row::mass] = rows[0] + off * placed.moments[0];
     } else {
-      add_components<P>(batch, first, count, placed, components, base, base_stride, result);
+      add_components<P>(batch, first, count, placed, components, base, result);
     }
     add_rows<Row::width>(batch, first, count, rows, result.rows.data());
   }
@@ -182,30 +182,29 @@ void add_elements_of(const ElementBatch& batch, std::size_t components, const do
 
 template <int P>
 void add_elements_degree(const ElementBatch& batch, std::size_t components, const double* base,
-                         std::size_t base_stride, ElementSums& result) {
-  if (batch.pieces.area_in_units)
-    return add_elements_of<P, false>(batch, components, base, base_stride, result);
-  return add_elements_of<P, true>(batch, components, base, base_stride, result);
+                         ElementSums& result) {
+  if (batch.pieces.area_in_units) return add_elements_of<P, false>(batch, components, base, result);
+  return add_elements_of<P, true>(batch, components, base, result);
 }
 
 void add_elements_target(int degree, const ElementBatch& batch, std::size_t components,
-                         const double* base, std::size_t base_stride, ElementSums& result) {
+                         const double* base, ElementSums& result) {
   switch (degree) {
     case 0:
-      return add_elements_degree<0>(batch, components, base, base_stride, result);
+      return add_elements_degree<0>(batch, components, base, result);
     case 1:
-      return add_elements_degree<1>(batch, components, base, base_stride, result);
+      return add_elements_degree<1>(batch, components, base, result);
     case 2:
-      return add_elements_degree<2>(batch, components, base, base_stride, result);
+      return add_elements_degree<2>(batch, components, base, result);
     default:
-      return add_elements_degree<3>(batch, components, base, base_stride, result);
+      return add_elements_degree<3>(batch, components, base, result);
   }
 }
 
 template <int P>
 void solve_elements_of(const ElementBatch& batch, const ElementSums& sums, const double* base,
                        const double* matrix, std::span<double* const> coefficients,
-                       SolvedElements& solved) {
+                       TargetPlaces::Row& defects) {
   using Row = RowOf<P>;
   constexpr std::size_t size = Row::size, padded = padded_to_lanes(size);
   Lanes rows[Row::width];
@@ -220,7 +219,7 @@ void solve_elements_of(const ElementBatch& batch, const ElementSums& sums, const
   const Lanes defect = solve_lanes<P>(rows, rows + Row::basis, rows[Row::mass], off, area,
                                       rows[Row::area], matrix, values);
   const Lanes none{};
-  store(select(defect < none, -defect, defect), solved.defect.data());
+  store(select(defect < none, -defect, defect), defects.data());
 #pragma GCC unroll 2
   for (std::size_t m = 0; m < padded; m += lanes) {
     transpose(values + m);
@@ -231,16 +230,16 @@ void solve_elements_of(const ElementBatch& batch, const ElementSums& sums, const
 
 void solve_elements_target(int degree, const ElementBatch& batch, const ElementSums& sums,
                            const double* base, const double* matrix,
-                           std::span<double* const> coefficients, SolvedElements& solved) {
+                           std::span<double* const> coefficients, TargetPlaces::Row& defects) {
   switch (degree) {
     case 0:
-      return solve_elements_of<0>(batch, sums, base, matrix, coefficients, solved);
+      return solve_elements_of<0>(batch, sums, base, matrix, coefficients, defects);
     case 1:
-      return solve_elements_of<1>(batch, sums, base, matrix, coefficients, solved);
+      return solve_elements_of<1>(batch, sums, base, matrix, coefficients, defects);
     case 2:
-      return solve_elements_of<2>(batch, sums, base, matrix, coefficients, solved);
+      return solve_elements_of<2>(batch, sums, base, matrix, coefficients, defects);
     default:
-      return solve_elements_of<3>(batch, sums, base, matrix, coefficients, solved);
+      return solve_elements_of<3>(batch, sums, base, matrix, coefficients, defects);
   }
 }
 
@@ -264,7 +263,7 @@ void ElementBatch::resize(std::size_t regions) {
 }
 
 void add_elements(int degree, const ElementBatch& batch, int components, const double* base,
-                  std::size_t base_stride, ElementSums& sums) {
+                  ElementSums& sums) {
   const std::size_t needed = padded_to_lanes(batch.regions());
   const auto nc = static_cast<std::size_t>(components);
   if (sums.ordinary.size() < needed) {
@@ -278,15 +277,15 @@ void add_elements(int degree, const ElementBatch& batch, int components, const d
     sums.product.assign(batch.elements * sums.product_stride, 0.0);
     sums.masses.assign(batch.elements * sums.mass_stride, 0.0);
   }
-  HWY_DYNAMIC_DISPATCH(add_elements_target)(degree, batch, nc, base, base_stride, sums);
+  HWY_DYNAMIC_DISPATCH(add_elements_target)(degree, batch, nc, base, sums);
 }
 
-SolvedElements solve_elements(int degree, const ElementBatch& batch, const ElementSums& sums,
-                              const double* base, std::span<double* const> coefficients) {
-  SolvedElements solved;
+TargetPlaces::Row solve_elements(int degree, const ElementBatch& batch, const ElementSums& sums,
+                                 const double* base, std::span<double* const> coefficients) {
+  TargetPlaces::Row defects;
   HWY_DYNAMIC_DISPATCH(solve_elements_target)
-  (degree, batch, sums, base, projection_rows(degree), coefficients, solved);
-  return solved;
+  (degree, batch, sums, base, projection_rows(degree), coefficients, defects);
+  return defects;
 }
 
 }  // namespace bezel::detail

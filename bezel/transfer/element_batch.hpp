@@ -51,20 +51,15 @@ struct ElementSums {
 
 /// Sums over the regions of the batch, whose pieces' sums have been made.
 /// @param degree  of the polynomials, at most max_moment_degree
-/// @param base    [element][component] the constants, rows of base_stride numbers, and
-///                batch_padding numbers
+/// @param base    [element][component] the constants, and batch_padding numbers
 void add_elements(int degree, const ElementBatch& batch, int components, const double* base,
-                  std::size_t base_stride, ElementSums& sums);
-
-/// What the solutions on straight elements leave.
-struct SolvedElements {
-  TargetPlaces::Row defect;  ///< |mass of the result - mass received|
-};
+                  ElementSums& sums);
 
 /// solve_straight for one component of each element.
 /// @param base          [element]
 /// @param coefficients  [element]
-SolvedElements solve_elements(int degree, const ElementBatch& batch, const ElementSums& sums,
-                              const double* base, std::span<double* const> coefficients);
+/// @return  [element] |mass of the result - mass received|
+TargetPlaces::Row solve_elements(int degree, const ElementBatch& batch, const ElementSums& sums,
+                                 const double* base, std::span<double* const> coefficients);
 
 }  // namespace bezel::detail

@@ -107,8 +107,8 @@ std::size_t ElementTransfer::begin_together(std::span<const std::int32_t> elemen
   const bool timed = batches_++ % timed_batches == 0;
   const auto start =
       timed ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
-  solved_ = solve_elements(g.target_space->uniform_degree(), batch, together_sums_[0],
-                           together_base_[0].data(), out);
+  together_defect_ = solve_elements(g.target_space->uniform_degree(), batch, together_sums_[0],
+                                    together_base_[0].data(), out);
   if (timed) {
     together_seconds_ =
         static_cast<double>(timed_batches) *
@@ -153,7 +153,7 @@ void ElementTransfer::sum_together(std::size_t i, std::span<const std::int32_t> 
   for (std::size_t k = 0; k < elements.size(); ++k)
     std::copy_n(batch.donor[batch.first_region[k]], nc,
                 base.begin() + static_cast<std::ptrdiff_t>(k * nc));
-  add_elements(degree, batch, g.components, base.data(), nc, together_sums_[i]);
+  add_elements(degree, batch, g.components, base.data(), together_sums_[i]);
 }
 
 ElementOutcome ElementTransfer::take(std::size_t k, std::int32_t t, const ElementPieces& own,
@@ -173,7 +173,7 @@ ElementOutcome ElementTransfer::take(std::size_t k, std::int32_t t, const Elemen
   outcome.partition_residual = std::abs(outcome.covered_area - own_area) / own_area;
   outcome.max_joint_gap = together_sums_[0].max_joint_gap;
   if (solved_together_) {
-    outcome.max_mass_defect = solved_.defect[k];
+    outcome.max_mass_defect = together_defect_[k];
     outcome.solve_seconds = std::exchange(together_seconds_, 0.0);
     return outcome;
   }

@@ -291,7 +291,7 @@ class ElementTransfer {
   std::vector<std::vector<double>> together_base_;   // by group, [element][component] and padding
   std::vector<std::vector<double>> together_whole_;  // by group, on curved elements: [element][n],
                                                      // whole_ of each
-  SolvedElements solved_;                            // of the only group, when solved_together_
+  TargetPlaces::Row together_defect_{};              // of masses, when solved_together_
   bool solved_together_ = false;
   double together_seconds_ = 0;  // that the solutions took
   std::uint64_t batches_ = 0;    // done so far

@@ -155,6 +155,13 @@ HWY_INLINE Lanes select(const Lanes::Mask& mask, const Lanes& yes, const Lanes& 
 
 #endif
 
+// What fits a register.
+#if HWY_TARGET <= HWY_AVX3
+using LanesPart = Lanes;
+#else
+using LanesPart = Lanes::Part;
+#endif
+
 HWY_INLINE Lanes load(const double* p) {
   Lanes x;
   std::memcpy(&x, p, sizeof x);
@@ -204,11 +211,7 @@ HWY_INLINE double mul_add(double a, double b, double c) {
 HWY_INLINE Lanes mul_add(const Lanes& a, const Lanes& b, const Lanes& c) {
 #if HWY_NATIVE_FMA
   namespace hn = hwy::HWY_NAMESPACE;
-#if HWY_TARGET <= HWY_AVX3
-  using Part = Lanes;
-#else
-  using Part = Lanes::Part;
-#endif
+  using Part = LanesPart;
   const hn::CappedTag<double, sizeof(Part) / sizeof(double)> d;
   const auto* x = reinterpret_cast<const double*>(&a);
   const auto* y = reinterpret_cast<const double*>(&b);
@@ -241,11 +244,7 @@ HWY_INLINE Lanes root(const Lanes& x) {
   r = load(all);
 #else
   namespace hn = hwy::HWY_NAMESPACE;
-#if HWY_TARGET <= HWY_AVX3
-  using Part = Lanes;
-#else
-  using Part = Lanes::Part;
-#endif
+  using Part = LanesPart;
   const hn::CappedTag<double, sizeof(Part) / sizeof(double)> d;
   const auto* from = reinterpret_cast<const double*>(&x);
   auto* to = reinterpret_cast<double*>(&r);
