@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "bezel/bernstein/fixed_size.hpp"
 #include "bezel/field/element_kernel.hpp"
 #include "bezel/field/integrals.hpp"
 
@@ -93,8 +92,8 @@ AbsIntegral::AbsIntegral(std::shared_ptr<const Space> space, int threads)
   });
 }
 
-double AbsIntegral::on_element(std::size_t e, const double* c, std::size_t stride, double integral,
-                               std::span<double> scratch) const {
+double AbsIntegral::of_both_signs(std::size_t e, const double* c, std::size_t stride,
+                                  double integral, std::span<double> scratch) const {
   const TriangleMesh& mesh = *space_->mesh();
   const ElementId id(e);
   const int d = space_->degree(id);
@@ -128,51 +127,10 @@ double AbsIntegral::on_element(std::size_t e, const double* c, std::size_t strid
   return total;
 }
 
-template <std::size_t fixed>
-void AbsIntegral::on_elements(const Field& field, std::size_t from, std::size_t to,
-                              const double* integrals, double* out, std::size_t stride,
-                              std::span<double> scratch) const {
-  const std::size_t n = fixed > 0 ? 1 : at(field.components());
-  const double* c = field.coefficients().data() + space_->offset(ElementId(from)) * n;
-  for (std::size_t e = from; e < to; ++e) {
-    const std::size_t count =
-        fixed > 0 ? fixed : at(bernstein::triangle_size(space_->degree(ElementId(e)))) * n;
-    for (std::size_t k = 0; k < n; ++k) {
-      double least = c[k], most = c[k];
-      for (std::size_t i = k + n; i < count; i += n) {
-        least = std::min(least, c[i]);
-        most = std::max(most, c[i]);
-      }
-      const bool one_sign = (least >= 0.0 || most <= 0.0) && shape(e) != Shape::beyond_frame;
-      out[k] = one_sign ? std::abs(integrals[k]) : on_element(e, c + k, n, integrals[k], scratch);
-    }
-    c += count;
-    integrals += stride;
-    out += stride;
-  }
-}
-
-std::vector<double> AbsIntegral::operator()(std::span<const Field* const> fields,
-                                            std::span<const double> element_integrals,
-                                            int threads) const {
-  const std::size_t stride = component_count(fields);
-  std::vector<double> out(element_integrals.size());
-  std::size_t room = 0;
-  for (const MapRule& p : pieces_) room = std::max(room, 4 * p.map.size());
-  const int uniform = space_->uniform_degree();
-  const std::size_t size = uniform >= 0 ? at(bernstein::triangle_size(uniform)) : 0;
-  for_chunks(space_->mesh()->element_count(), threads, [&](std::size_t from, std::size_t to) {
-    std::vector<double> scratch(room);
-    std::size_t place = from * stride;
-    for (const Field* f : fields) {
-      bernstein::with_triangle_size(f->components() == 1 ? size : 0, [&](auto fixed) {
-        on_elements<fixed()>(*f, from, to, element_integrals.data() + place, out.data() + place,
-                             stride, scratch);
-      });
-      place += at(f->components());
-    }
-  });
-  return integral(out, stride);
+std::size_t AbsIntegral::room() const {
+  std::size_t most = 0;
+  for (const MapRule& p : pieces_) most = std::max(most, 4 * p.map.size());
+  return most;
 }
 
 }  // namespace bezel::field_detail

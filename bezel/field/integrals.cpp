@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "bezel/bernstein/fixed_size.hpp"
-#include "bezel/field/element_kernel.hpp"
 #include "bezel/numeric/eft.hpp"
 #include "bezel/numeric/lanes.hpp"
 #include "bezel/numeric/sum.hpp"
@@ -15,33 +13,6 @@ namespace {
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
-}
-
-/// out[e * stride + k] = sum over an element's coefficients of basis[i] c[i, k], for elements of
-/// `fixed` coefficients (0: of `size`).
-template <std::size_t fixed>
-void add_products(std::size_t size, const double* basis, const double* c, std::size_t components,
-                  std::size_t elements, std::size_t stride, double* out) {
-  const std::size_t n = fixed > 0 ? fixed : size;
-  for (std::size_t e = 0; e < elements; ++e) {
-    for (std::size_t k = 0; k < components; ++k) {
-      double total = 0.0;
-      for (std::size_t i = 0; i < n; ++i) total += basis[i] * c[i * components + k];
-      out[k] = total;
-    }
-    basis += n;
-    c += n * components;
-    out += stride;
-  }
-}
-
-/// The same with the numbers that occur most known to the compiler.
-void integrate_elements(std::size_t size, const double* basis, const double* c,
-                        std::size_t components, std::size_t elements, std::size_t stride,
-                        double* out) {
-  if (components > 1) return add_products<0>(size, basis, c, components, elements, stride, out);
-  bernstein::with_triangle_size(
-      size, [&](auto fixed) { add_products<fixed()>(size, basis, c, 1, elements, stride, out); });
 }
 
 }  // namespace
@@ -120,32 +91,6 @@ std::size_t component_count(std::span<const Field* const> fields) {
   std::size_t count = 0;
   for (const Field* f : fields) count += at(f->components());
   return count;
-}
-
-std::vector<double> element_integrals(std::span<const Field* const> fields,
-                                      std::span<const double> basis_integrals, int threads) {
-  const Space& space = fields.front()->space();
-  const std::size_t elements = space.mesh()->element_count(), stride = component_count(fields);
-  const int uniform = space.uniform_degree();
-  std::vector<double> out(elements * stride);
-  for_chunks(elements, threads, [&](std::size_t from, std::size_t to) {
-    std::size_t first = 0;
-    for (const Field* f : fields) {
-      const std::size_t components = at(f->components());
-      // All elements at once where their degree is one.
-      const std::size_t step = uniform >= 0 ? to - from : 1;
-      for (std::size_t e = from; e < to; e += step) {
-        const ElementId id(e);
-        const std::size_t begin = space.offset(id);
-        integrate_elements(at(bernstein::triangle_size(space.degree(id))),
-                           basis_integrals.data() + begin,
-                           f->coefficients().data() + begin * components, components, step, stride,
-                           out.data() + e * stride + first);
-      }
-      first += components;
-    }
-  });
-  return out;
 }
 
 std::vector<double> integral(std::span<const double> element_integrals, std::size_t components) {

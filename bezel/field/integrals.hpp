@@ -2,6 +2,7 @@
 // Internal: integrals of many fields of one space; what depends on the elements only is done once.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -48,28 +49,29 @@ std::vector<double> basis_integrals(const Space& space, int threads = 0);
 /// numbered one field after the other.
 std::size_t component_count(std::span<const Field* const> fields);
 
-/// element_integrals() of fields of one space from those of the basis functions, shape (elements,
-/// all components).
-std::vector<double> element_integrals(std::span<const Field* const> fields,
-                                      std::span<const double> basis_integrals, int threads = 0);
-
 /// integral() of each component, from the integrals over elements, shape (elements, components).
 std::vector<double> integral(std::span<const double> element_integrals, std::size_t components);
 
-/// integral_abs() of fields of one space, from their integrals over elements.
+/// Integrals of |f| over the elements of one space.
 class AbsIntegral {
  public:
   explicit AbsIntegral(std::shared_ptr<const Space> space, int threads = 0);
-  /// @param element_integrals  of the fields, shape (elements, all components)
-  std::vector<double> operator()(std::span<const Field* const> fields,
-                                 std::span<const double> element_integrals, int threads = 0) const;
+
+  /// Of one component on an element.
+  /// @param c            its coefficients, `stride` apart
+  /// @param least, most  of them
+  /// @param integral     of f
+  /// @param scratch      room() numbers
+  double operator()(std::size_t e, const double* c, std::size_t stride, double least, double most,
+                    double integral, std::span<double> scratch) const {
+    if ((least >= 0.0 || most <= 0.0) && shape(e) != Shape::beyond_frame) return std::abs(integral);
+    return of_both_signs(e, c, stride, integral, scratch);
+  }
+  std::size_t room() const;
 
  private:
-  double on_element(std::size_t e, const double* c, std::size_t stride, double integral,
-                    std::span<double> scratch) const;
-  template <std::size_t fixed>
-  void on_elements(const Field& field, std::size_t from, std::size_t to, const double* integrals,
-                   double* out, std::size_t stride, std::span<double> scratch) const;
+  double of_both_signs(std::size_t e, const double* c, std::size_t stride, double integral,
+                       std::span<double> scratch) const;
 
   /// Whether coefficients of one sign say that of f (not where an element reaches out of a frame
   /// given by the caller), and whether f is a polynomial in a straight triangle's own coordinates.

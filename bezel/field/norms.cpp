@@ -11,7 +11,7 @@
 #include "bezel/field/element_kernel.hpp"
 #include "bezel/field/field.hpp"
 #include "bezel/field/formula_kernel.hpp"
-#include "bezel/field/integrals.hpp"
+#include "bezel/field/survey.hpp"
 #include "bezel/numeric/sum.hpp"
 
 namespace bezel {
@@ -47,11 +47,16 @@ double ratio(double a, double b) {
   return a > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
 }
 
+field_detail::Survey look(const Field& field, const field_detail::SurveyAim& aim, int threads) {
+  return field_detail::survey(field.space(), field_detail::columns_of(std::array{&field}), aim,
+                              threads);
+}
+
 }  // namespace
 
 std::vector<double> element_integrals(const Field& field, int threads) {
-  return field_detail::element_integrals(
-      std::array{&field}, field_detail::basis_integrals(field.space(), threads), threads);
+  field_detail::SpaceMeasures measures(field.space_ptr(), threads);
+  return look(field, {measures.basis_integrals()}, threads).integrals;
 }
 
 std::vector<double> integral(const Field& field, int threads) {
@@ -59,8 +64,9 @@ std::vector<double> integral(const Field& field, int threads) {
 }
 
 std::vector<double> integral_abs(const Field& field, int threads) {
-  return field_detail::AbsIntegral(field.space_ptr(), threads)(
-      std::array{&field}, element_integrals(field, threads), threads);
+  field_detail::SpaceMeasures measures(field.space_ptr(), threads);
+  const field_detail::SurveyAim aim{measures.basis_integrals(), &measures.absolute()};
+  return field_detail::integral(look(field, aim, threads).absolute, at(field.components()));
 }
 
 double l2_norm(const Field& field, int threads) {

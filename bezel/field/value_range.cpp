@@ -8,11 +8,10 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/bernstein/ceiling.hpp"
-#include "bezel/bernstein/fixed_size.hpp"
 #include "bezel/field/element_kernel.hpp"
 #include "bezel/field/element_range.hpp"
 #include "bezel/field/piece_bounds.hpp"
-#include "bezel/numeric/numbers.hpp"
+#include "bezel/field/survey.hpp"
 
 namespace bezel {
 namespace {
@@ -97,15 +96,33 @@ ValueRanges::ValueRanges(std::shared_ptr<const Space> space, int threads)
   });
 }
 
+Known ValueRanges::bounds_on(const Field& field, int component, std::size_t e) const {
+  const ElementId id(e);
+  const double share = widening(e);
+  if (share < 0.0) return field_detail::piece_bounds(field, id, component)(field.mesh().gather(id));
+  const auto c = field.coefficients(id);
+  const auto first = at(component), step = at(field.components());
+  double lo = c[first], hi = lo;
+  for (std::size_t i = first + step; i < c.size(); i += step) {
+    lo = std::min(lo, c[i]);
+    hi = std::max(hi, c[i]);
+  }
+  const double wider = share * (hi - lo);
+  return {lo - wider, hi + wider, 0.0, 0.0, wider};
+}
+
 double ValueRanges::attained(const Search& search, std::size_t e) const {
   const ElementId id(e);
   const int d = space_->degree(id), g = search.field.mesh().degree();
   const std::vector<double> own = field_detail::component_of(search.field, id, search.component);
   double best = -std::numeric_limits<double>::infinity();
   for (int corner = 0; corner < 3; ++corner) {
-    const NodeId node = search.field.mesh().nodes(id)[at(bernstein::triangle_corner(g, corner))];
-    const double value = bernstein::evaluate<double>(
-        d, own, space_->frame(id).lambda(search.field.mesh().control(node)));
+    double value = own[at(bernstein::triangle_corner(d, corner))];
+    if (!widening_.empty()) {
+      const NodeId node = search.field.mesh().nodes(id)[at(bernstein::triangle_corner(g, corner))];
+      value = bernstein::evaluate<double>(
+          d, own, space_->frame(id).lambda(search.field.mesh().control(node)));
+    }
     best = std::max(best, search.sign * value);
   }
   return best;
@@ -114,7 +131,7 @@ double ValueRanges::attained(const Search& search, std::size_t e) const {
 /// An upper bound of the largest value on the element, sharp unless it is below `known`.
 double ValueRanges::sharp(const Search& search, const Candidate& candidate, double known) const {
   const ElementId id(candidate.element);
-  if (!widening_.empty() && widening_[id.index()] >= 0.0) {
+  if (!widening_.empty() && widening(id.index()) >= 0.0) {
     // On the whole frame first: cheaper than the composition with the element's map.
     std::vector<double> c = field_detail::component_of(search.field, id, search.component);
     for (double& x : c) x *= search.sign;
@@ -130,16 +147,35 @@ double ValueRanges::sharp(const Search& search, const Candidate& candidate, doub
   return std::min(candidate.bound, search.sign > 0.0 ? range.hi : -range.lo);
 }
 
-double ValueRanges::largest(const Search& search, double known,
-                            std::span<const double> bounds) const {
-  std::vector<Candidate> candidates;
-  for (std::size_t e = 0; e < bounds.size(); ++e)
-    if (bounds[e] > known) candidates.push_back({e, bounds[e]});
-  if (!widening_.empty()) {
-    for (const Candidate& c : candidates)
-      if (c.bound > known) known = std::max(known, attained(search, c.element));
-    std::erase_if(candidates, [&](const Candidate& c) { return c.bound <= known; });
+ValueRanges::Candidate ValueRanges::highest(const Search& search) const {
+  constexpr std::size_t block = field_detail::BlockBounds::block;
+  const auto most = std::max_element(search.bound.begin(), search.bound.end());
+  const std::size_t begin = static_cast<std::size_t>(most - search.bound.begin()) * block;
+  Candidate best{begin, -std::numeric_limits<double>::infinity()};
+  for (std::size_t e = begin; e < std::min(begin + block, space_->mesh()->element_count()); ++e) {
+    const Known known = bounds_on(search.field, search.component, e);
+    const double bound = search.sign > 0.0 ? known.hi : -known.lo;
+    if (bound > best.bound) best = {e, bound};
   }
+  return best;
+}
+
+double ValueRanges::largest(const Search& search) const {
+  constexpr std::size_t block = field_detail::BlockBounds::block;
+  double known = attained(search, highest(search).element);
+  std::vector<Candidate> candidates;
+  for (std::size_t b = 0; b < search.bound.size(); ++b) {
+    if (search.bound[b] <= known) continue;
+    const std::size_t end = std::min((b + 1) * block, space_->mesh()->element_count());
+    for (std::size_t e = b * block; e < end; ++e) {
+      const Known here = bounds_on(search.field, search.component, e);
+      const double bound = search.sign > 0.0 ? here.hi : -here.lo;
+      if (bound > known) candidates.push_back({e, bound});
+    }
+  }
+  for (const Candidate& c : candidates)
+    if (c.bound > known) known = std::max(known, attained(search, c.element));
+  std::erase_if(candidates, [&](const Candidate& c) { return c.bound <= known; });
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return a.bound != b.bound ? a.bound > b.bound : a.element < b.element;
   });
@@ -150,103 +186,50 @@ double ValueRanges::largest(const Search& search, double known,
   return known;
 }
 
-Range ValueRanges::in_reference(const Field& field, int component, double rel_tol) const {
-  const std::size_t elements = field.mesh().element_count();
-  const std::size_t n = at(field.components());
-  const double* coefficients = field.coefficients().data() + component;
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Range attained{infinity, -infinity}, all = attained;  // at corners; of the coefficients
-  const bool corners_tell = space_->highest_degree() <= 1;
-  Numbers high(corners_tell ? 0 : elements), low(high.size());
-  const auto look = [&](auto fixed) {
-    const double* c = coefficients;
-    const std::size_t step = fixed() > 0 ? 1 : n;
-    for (std::size_t e = 0; e < elements; ++e) {
-      const int d = space_->degree(ElementId(e));
-      const std::size_t size = fixed() > 0 ? fixed() : at(bernstein::triangle_size(d));
-      const double first = c[0], second = c[at(d) * step], third = c[(size - 1) * step];
-      double lo = std::min(std::min(first, second), third);
-      double hi = std::max(std::max(first, second), third);
-      attained = {std::min(attained.lo, lo), std::max(attained.hi, hi)};
-      if (!corners_tell) {
-        for (std::size_t i = 1; i + 1 < size; ++i) {
-          lo = std::min(lo, c[i * step]);
-          hi = std::max(hi, c[i * step]);
-        }
-        all = {std::min(all.lo, lo), std::max(all.hi, hi)};
-        high[e] = hi;
-        low[e] = -lo;
-      }
-      c += size * step;
-    }
-  };
-  const int uniform = space_->uniform_degree();
-  bernstein::with_triangle_size(uniform >= 0 && n == 1 ? at(bernstein::triangle_size(uniform)) : 0,
-                                look);
-  return corners_tell ? attained
-                      : search_both(field, component, rel_tol, 0.0, attained, all, low, high);
-}
-
-Range ValueRanges::search_both(const Field& field, int component, double rel_tol, double slack,
-                               const Range& attained, const Range& all, std::span<const double> low,
-                               std::span<const double> high) const {
-  if (all.lo == all.hi) return all;
-  // Below the rounding of the values themselves (a constant field) there is nothing to find.
-  const double rounding = std::max(slack, 64.0 * u * std::max(std::abs(all.lo), std::abs(all.hi)));
-  const double tol = std::max(rel_tol * (all.hi - all.lo), rounding);
-  return {-largest({field, component, -1.0, tol, rounding}, -attained.lo, low),
-          largest({field, component, 1.0, tol, rounding}, attained.hi, high)};
-}
-
 Range ValueRanges::operator()(const Field& field, int component, double rel_tol) const {
   field_detail::check_component(field, component);
   check_tolerance(rel_tol);
   if (rel_tol == 0.0) return coefficient_range(field, component);
-  if (widening_.empty()) return in_reference(field, component, rel_tol);
-  const std::size_t elements = field.mesh().element_count();
-  const std::size_t n = at(field.components());
-  const double* coefficients = field.coefficients().data() + component;
-  Numbers high(elements), low(elements);
+  const field_detail::Column column{field.coefficients().data() + component,
+                                    at(field.components())};
+  field_detail::SurveyAim aim;
+  aim.ranges = this;
+  return (*this)(field, component, field_detail::survey(*space_, {&column, 1}, aim, 1).bounds, 0,
+                 rel_tol);
+}
+
+Range ValueRanges::operator()(const Field& field, int component,
+                              const field_detail::BlockBounds& bounds, std::size_t place,
+                              double rel_tol) const {
+  constexpr std::size_t block = field_detail::BlockBounds::block;
+  const std::size_t elements = space_->mesh()->element_count();
+  Search high{field, component, 1.0, 0.0, 0.0, {}}, low{field, component, -1.0, 0.0, 0.0, {}};
   double slack = 0.0;
-  std::size_t highest = 0, lowest = 0;
-  const auto look = [&](auto fixed) {
-    const double* c = coefficients;
-    const std::size_t step = fixed() > 0 ? 1 : n;
-    for (std::size_t e = 0; e < elements; ++e) {
-      const ElementId id(e);
-      const std::size_t size =
-          fixed() > 0 ? fixed() : at(bernstein::triangle_size(space_->degree(id)));
-      double lo = *c, hi = *c;
-      for (std::size_t i = 1; i < size; ++i) {
-        lo = std::min(lo, c[i * step]);
-        hi = std::max(hi, c[i * step]);
-      }
-      if (widening_[e] >= 0.0) {
-        const double wider = widening_[e] * (hi - lo);
-        slack = std::max(slack, wider);
-        lo -= wider;
-        hi += wider;
-      } else {
-        const Known known =
-            field_detail::piece_bounds(field, id, component)(field.mesh().gather(id));
+  for (std::size_t i = place; i < bounds.high.size(); i += bounds.components) {
+    double lo = bounds.low[i], hi = bounds.high[i];
+    slack = std::max(slack, bounds.slack[i]);
+    if (!std::isfinite(hi) || !std::isfinite(lo)) {
+      const std::size_t begin = high.bound.size() * block;
+      lo = std::numeric_limits<double>::infinity();
+      hi = -lo;
+      for (std::size_t e = begin; e < std::min(begin + block, elements); ++e) {
+        const Known known = bounds_on(field, component, e);
         slack = std::max(slack, known.slack);
-        lo = known.lo;
-        hi = known.hi;
+        lo = std::min(lo, known.lo);
+        hi = std::max(hi, known.hi);
       }
-      high[e] = hi;
-      low[e] = -lo;
-      if (hi > high[highest]) highest = e;
-      if (-lo > low[lowest]) lowest = e;
-      c += size * step;
     }
-  };
-  const int uniform = space_->uniform_degree();
-  bernstein::with_triangle_size(uniform >= 0 && n == 1 ? at(bernstein::triangle_size(uniform)) : 0,
-                                look);
-  const Range known{-attained({field, component, -1.0, 0.0, 0.0}, lowest),
-                    attained({field, component, 1.0, 0.0, 0.0}, highest)};
-  return search_both(field, component, rel_tol, slack, known, {-low[lowest], high[highest]}, low,
-                     high);
+    high.bound.push_back(hi);
+    low.bound.push_back(-lo);
+  }
+  const Range all{-*std::ranges::max_element(low.bound), *std::ranges::max_element(high.bound)};
+  // Corners tell, or there is nothing to find.
+  if (all.lo == all.hi || (widening_.empty() && space_->highest_degree() <= 1)) return all;
+  // Below the rounding of the values themselves (a constant field) there is nothing to find.
+  const double rounding = std::max(slack, 64.0 * u * std::max(std::abs(all.lo), std::abs(all.hi)));
+  high.roundoff = low.roundoff = rounding;
+  high.tol = low.tol = std::max(rel_tol * (all.hi - all.lo), rounding);
+  return {-largest(low), largest(high)};
 }
 
 Range value_range(const Field& field, int component, double rel_tol) {

@@ -5,10 +5,10 @@
 
 #include "bezel/base/parallel.hpp"
 #include "bezel/bernstein/fixed_size.hpp"
-#include "bezel/field/integrals.hpp"
 #include "bezel/transfer/accumulate.hpp"
 #include "bezel/transfer/moments.hpp"
 #include "bezel/transfer/piece_batch.hpp"
+#include "bezel/transfer/power_batch.hpp"
 
 namespace bezel::detail {
 namespace {
@@ -16,64 +16,71 @@ namespace {
 /// Coefficients that differ by less than this fraction are equal up to rounding.
 constexpr double equal_rounding = 0x1p-49;
 
-constexpr std::size_t block = 512;  // elements a task
+constexpr std::size_t task_size = 512;  // elements
 
 /// Calls body(e) for all elements.
 template <class Body>
 void for_blocks(std::size_t elements, int threads, const Body& body) {
-  parallel_for((elements + block - 1) / block,
+  parallel_for((elements + task_size - 1) / task_size,
                [&](std::size_t b) {
-                 for (std::size_t e = b * block; e < std::min(elements, (b + 1) * block); ++e)
+                 for (std::size_t e = b * task_size; e < std::min(elements, (b + 1) * task_size);
+                      ++e)
                    body(e);
                },
                threads);
 }
 
-/// One component of a donor field: its coefficients are `stride` apart.
-struct Column {
-  const double* first;
-  std::size_t stride;
-};
+constexpr auto most_powers = static_cast<std::size_t>(bernstein::triangle_size(max_moment_degree));
 
-std::vector<Column> columns_of(std::span<const Field* const> fields) {
-  std::vector<Column> columns;
-  for (const Field* f : fields) {
-    const auto own = static_cast<std::size_t>(f->components());
-    for (std::size_t c = 0; c < own; ++c) columns.push_back({f->coefficients().data() + c, own});
-  }
-  return columns;
+/// A row of `fixed` (0: of `size`) numbers times the matrix, as a column of nc components.
+template <std::size_t fixed>
+void multiply_row(std::size_t size, std::size_t nc, const double* matrix, const double* from,
+                  double* to) {
+  const std::size_t n = fixed > 0 ? fixed : size;
+  std::array<double, (fixed > 0 ? fixed : most_powers)> sum{};
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t m = 0; m < n; ++m) sum[m] += from[i] * matrix[i * n + m];
+  for (std::size_t m = 0; m < n; ++m) to[m * nc] = sum[m];
 }
 
-/// Coefficients of one element from number `begin` on, times the factors, one column after the
-/// other.
-void scale_columns(std::span<const Column> columns, std::size_t begin,
-                   std::span<const double> factors, double* to) {
+/// The powers of some components on some elements of one degree.
+void block_powers(int degree, const field_detail::SurveyBlock& block, std::size_t nc, double* to) {
+  const std::size_t elements = block.to - block.from;
+  if (block.width == lanes) return powers_of(degree, elements, block.c, block.count, nc, to);
+  const auto factors = multinomials(degree);
+  const double* c = block.c;
   bernstein::with_triangle_size(factors.size(), [&](auto fixed) {
+    const double* const matrix = power_matrix(degree).data();
     const std::size_t size = fixed() > 0 ? fixed() : factors.size();
-    for (const Column& column : columns) {
-      const double* from = column.first + begin * column.stride;
-      if (column.stride == 1) {
-        for (std::size_t n = 0; n < size; ++n) to[n] = from[n] * factors[n];
-      } else {
-        for (std::size_t n = 0; n < size; ++n) to[n] = from[n * column.stride] * factors[n];
-      }
-      to += size;
+    std::array<double, most_powers> scaled;
+    for (std::size_t e = 0; e < elements; ++e, c += size, to += size * nc) {
+      for (std::size_t n = 0; n < size; ++n) scaled[n] = c[n] * factors[n];
+      multiply_row<fixed()>(size, nc, matrix, scaled.data(), to);
     }
   });
 }
+static_assert(field_detail::survey_width == lanes);
 
-/// Each of nc rows of `fixed` (0: of `size`) numbers times the matrix, as columns.
-template <std::size_t fixed>
-void multiply_rows(std::size_t size, std::size_t nc, const double* matrix, const double* from,
-                   double* to) {
-  constexpr std::size_t room =
-      fixed > 0 ? fixed : static_cast<std::size_t>(bernstein::triangle_size(max_moment_degree));
-  const std::size_t n = fixed > 0 ? fixed : size;
-  for (std::size_t c = 0; c < nc; ++c, from += n) {
-    std::array<double, room> sum{};
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t m = 0; m < n; ++m) sum[m] += from[i] * matrix[i * n + m];
-    for (std::size_t m = 0; m < n; ++m) to[m * nc + c] = sum[m];
+/// Appends `own` columns of some rows, `stride` apart, side by side.
+void append_columns(const double* from, std::size_t stride, std::size_t rows, std::size_t own,
+                    std::vector<double>& buffer, std::vector<double>& to) {
+  buffer.resize(rows * own);
+  if (own == 1) {
+    for (std::size_t n = 0; n < rows; ++n) buffer[n] = from[n * stride];
+  } else {
+    for (std::size_t n = 0; n < rows; ++n) std::copy_n(from + n * stride, own, &buffer[n * own]);
+  }
+  to.insert(to.end(), buffer.begin(), buffer.end());
+}
+
+/// One element's coefficients from number `begin` on, times the factors, one column after the
+/// other.
+void scale_columns(std::span<const field_detail::Column> columns, std::size_t begin,
+                   std::span<const double> factors, double* to) {
+  for (const field_detail::Column& column : columns) {
+    const double* from = column.first + begin * column.stride;
+    for (std::size_t n = 0; n < factors.size(); ++n) to[n] = from[n * column.stride] * factors[n];
+    to += factors.size();
   }
 }
 
@@ -102,23 +109,37 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
       target_mapped(target_space->basis() == Basis::reference && target.degree > 1) {
   make_frames(donor, target, threads);
   const auto nc = static_cast<std::size_t>(components);
-  donor_integrals = field_detail::basis_integrals(*donor_space, threads);
-  donor_mass = field_detail::element_integrals(fields, donor_integrals, threads);
-  scaled.resize(donor_space->coefficient_count() * nc);
-  const std::vector<Column> columns = columns_of(fields);
-  if (nc == 1 && donor_degree.highest <= 1) {
-    // The factors are 1.
-    const std::span<const double> all = fields.front()->coefficients();
-    std::copy(all.begin(), all.end(), scaled.begin());
-  } else {
-    for_blocks(donor.element_count(), threads, [&](std::size_t e) {
-      const std::size_t begin = donor_space->offset(ElementId(e));
-      scale_columns(columns, begin, multinomials(donor_space->degree(ElementId(e))),
-                    scaled.data() + begin * nc);
-    });
-  }
+  fields_ = field_detail::columns_of(fields);
+  donor_measures = std::make_shared<field_detail::SpaceMeasures>(donor_space, threads);
+  const field_detail::SurveyAim aim{donor_measures->basis_integrals(), &donor_measures->absolute(),
+                                    &donor_measures->ranges()};
   out.resize(target_space->coefficient_count() * nc);
+  if (by_powers()) {
+    powers.resize(donor_space->coefficient_count() * nc + batch_padding);
+    std::fill(powers.end() - batch_padding, powers.end(), 0.0);
+  }
+  donor_survey = field_detail::survey(
+      *donor_space, fields_, aim, threads, [&](const field_detail::SurveyBlock& block) {
+        if (!powers.empty())
+          block_powers(
+              donor_degree.uniform, block, nc,
+              powers.data() + donor_space->offset(ElementId(block.from)) * nc + block.first);
+      });
+  donor_mass = std::move(donor_survey.integrals);
+  if (by_powers()) return;
+  scaled_.resize(donor_space->coefficient_count() * nc);
+  for_blocks(donor.element_count(), threads, [&](std::size_t e) {
+    const std::size_t begin = donor_space->offset(ElementId(e));
+    scale_columns(fields_, begin, multinomials(donor_space->degree(ElementId(e))),
+                  scaled_.data() + begin * nc);
+  });
   make_powers(donor.element_count(), threads);
+}
+
+bool Group::by_powers() const {
+  const int degree = donor_degree.uniform;
+  return !donor_mapped && !target_mapped && degree >= 0 && degree <= max_moment_degree &&
+         degree == target_space->uniform_degree();
 }
 
 Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
@@ -132,8 +153,8 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
       donor_degree(donor_degree_in),
       donor_mapped(donor_space->basis() == Basis::reference && donor.degree > 1),
       target_mapped(target_space->basis() == Basis::reference && target.degree > 1),
-      scaled(scaled_in.begin(), scaled_in.end()),
-      donor_mass(std::move(donor_mass_in)) {
+      donor_mass(std::move(donor_mass_in)),
+      scaled_(scaled_in.begin(), scaled_in.end()) {
   make_frames(donor, target, threads);
   out.resize(target_space->coefficient_count() * static_cast<std::size_t>(components));
   make_powers(donor.element_count(), threads);
@@ -142,23 +163,25 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
 void Group::make_powers(std::size_t elements, int threads) {
   const auto nc = static_cast<std::size_t>(components);
   if (donor_mapped || target_mapped) return;
-  powers.resize(scaled.size() + batch_padding);
+  powers.resize(scaled_.size() + batch_padding);
   std::fill(powers.end() - batch_padding, powers.end(), 0.0);
   const auto of_elements = [&](std::size_t from, std::size_t to, int degree) {
     const auto size = static_cast<std::size_t>(bernstein::triangle_size(degree));
     const std::size_t begin = donor_space->offset(ElementId(from)) * nc;
     bernstein::with_triangle_size(size, [&](auto fixed) {
       const double* const matrix = power_matrix(degree).data();
-      const double* row = scaled.data() + begin;
+      const double* row = scaled_.data() + begin;
       double* to_row = powers.data() + begin;
-      for (std::size_t e = from; e < to; ++e, row += size * nc, to_row += size * nc)
-        multiply_rows<fixed()>(size, nc, matrix, row, to_row);
+      for (std::size_t e = from; e < to; ++e, to_row += size * nc)
+        for (std::size_t c = 0; c < nc; ++c, row += size)
+          multiply_row<fixed()>(size, nc, matrix, row, to_row + c);
     });
   };
   const int uniform = donor_degree.uniform;
-  parallel_for((elements + block - 1) / block,
+  parallel_for((elements + task_size - 1) / task_size,
                [&](std::size_t b) {
-                 const std::size_t begin = b * block, end = std::min(elements, begin + block);
+                 const std::size_t begin = b * task_size,
+                                   end = std::min(elements, begin + task_size);
                  const std::size_t step = uniform >= 0 ? end - begin : 1;
                  for (std::size_t e = begin; e < end; e += step) {
                    const int degree = donor_space->degree(ElementId(e));
@@ -180,10 +203,10 @@ Group::Group(const OverlayMesh& donor, const OverlayMesh& target,
   make_frames(donor, target, threads);
   const auto nc = static_cast<std::size_t>(components);
   for (int d = 0; d <= donor_degree.highest; ++d) {
-    scaled_offset_.push_back(scaled.size());
+    scaled_offset_.push_back(scaled_.size());
     const auto factors = multinomials(d);
     for (std::size_t c = 0; c < nc; ++c) {
-      for (std::size_t n = 0; n < factors.size(); ++n) scaled.push_back(n == c ? factors[n] : 0.0);
+      for (std::size_t n = 0; n < factors.size(); ++n) scaled_.push_back(n == c ? factors[n] : 0.0);
     }
   }
   const std::vector<double> integrals = field_detail::basis_integrals(*donor_space, threads);
@@ -221,21 +244,28 @@ void Group::make_frames(const OverlayMesh& donor, const OverlayMesh& target, int
   if (!target_mapped) target_frame = of_elements(target, *target_space, made_target_frame_);
 }
 
-std::span<const double> Group::donor_scaled(std::int32_t e) const {
+ScaledCoefficients Group::donor_scaled(std::int32_t e) const {
   const ElementId id(e);
   const auto nc = static_cast<std::size_t>(components);
   const int degree = donor_space->degree(id);
   const auto size = static_cast<std::size_t>(bernstein::triangle_size(degree));
-  if (!scaled_offset_.empty())
-    return {scaled.data() + scaled_offset_[static_cast<std::size_t>(degree)], size * nc};
-  return {scaled.data() + donor_space->offset(id) * nc, size * nc};
+  const std::size_t begin = donor_space->offset(id);
+  if (scaled_.empty()) {
+    std::vector<double> made(size * nc);
+    scale_columns(fields_, begin, multinomials(degree), made.data());
+    return ScaledCoefficients(std::move(made));
+  }
+  const std::size_t place =
+      of_basis() ? scaled_offset_[static_cast<std::size_t>(degree)] : begin * nc;
+  return ScaledCoefficients(std::span<const double>(scaled_).subspan(place, size * nc));
 }
 
 double Group::constant_of(const OverlayMesh& donor, std::int32_t e, std::size_t component) const {
   const auto d = static_cast<std::size_t>(e);
   const auto nc = static_cast<std::size_t>(components);
   const auto factors = multinomials(donor_space->degree(ElementId(e)));
-  const auto own = donor_scaled(e).subspan(component * factors.size(), factors.size());
+  const ScaledCoefficients all_own = donor_scaled(e);
+  const double* const own = all_own.data() + component * factors.size();
   bool equal = true;
   for (std::size_t n = 0; n < factors.size(); ++n) {
     const double all = own[0] * factors[n];
@@ -252,47 +282,59 @@ std::span<double> Group::target_out(std::int32_t e) {
 }
 
 void Group::drop_donor() {
-  scaled = {};
+  scaled_ = {};
+  fields_.clear();
   powers = {};
 }
 
 std::vector<std::vector<double>> take_fields(Group& g, std::span<const std::size_t> components,
-                                             int threads) {
+                                             const field_detail::SurveyAim& aim,
+                                             field_detail::Survey& survey, int threads) {
   std::vector<std::vector<double>> parts(components.size());
+  const Space& space = *g.target_space;
+  const bool look = !aim.basis_integrals.empty();
   if (components.size() == 1) {
     parts[0] = std::move(g.out);
+    if (!look) return parts;
+    std::vector<field_detail::Column> columns;
+    for (std::size_t c = 0; c < components[0]; ++c)
+      columns.push_back({parts[0].data() + c, components[0]});
+    survey = field_detail::survey(space, columns, aim, threads);
     return parts;
   }
-  const std::size_t rows = g.target_space->coefficient_count();
+  const std::size_t rows = space.coefficient_count(), elements = space.mesh()->element_count();
   const auto all = static_cast<std::size_t>(g.components);
-  std::vector<std::size_t> first(components.size(), 0);
-  for (std::size_t m = 1; m < first.size(); ++m) first[m] = first[m - 1] + components[m - 1];
+  if (look) survey = field_detail::make_survey(space, all, aim);
+  std::vector<std::size_t> first(components.size() + 1, 0);
+  for (std::size_t m = 0; m < components.size(); ++m) first[m + 1] = first[m] + components[m];
   // Some fields a task, some rows for one field after the other: what lies side by side is read
   // once, and what is written need not be set to 0 before.
-  constexpr std::size_t some_rows = 64, some_fields = 8;
-  parallel_for(
-      (components.size() + some_fields - 1) / some_fields,
-      [&](std::size_t task) {
-        const std::size_t begin = task * some_fields,
-                          end = std::min(begin + some_fields, components.size());
-        for (std::size_t m = begin; m < end; ++m) parts[m].reserve(rows * components[m]);
-        std::array<double, some_rows* static_cast<std::size_t>(Field::max_components)> buffer;
-        for (std::size_t r = 0; r < rows; r += some_rows) {
-          const std::size_t count = std::min(some_rows, rows - r);
-          for (std::size_t m = begin; m < end; ++m) {
-            const std::size_t own = components[m];
-            const double* from = g.out.data() + r * all + first[m];
-            if (own == 1) {
-              for (std::size_t n = 0; n < count; ++n) buffer[n] = from[n * all];
-            } else {
-              for (std::size_t n = 0; n < count; ++n)
-                for (std::size_t c = 0; c < own; ++c) buffer[n * own + c] = from[n * all + c];
-            }
-            parts[m].insert(parts[m].end(), buffer.data(), buffer.data() + count * own);
-          }
-        }
-      },
-      threads);
+  constexpr std::size_t some_fields = 8;
+  parallel_for((components.size() + some_fields - 1) / some_fields,
+               [&](std::size_t task) {
+                 const std::size_t begin = task * some_fields,
+                                   end = std::min(begin + some_fields, components.size());
+                 for (std::size_t m = begin; m < end; ++m) parts[m].reserve(rows * components[m]);
+                 std::vector<double> buffer, scratch;
+                 for (std::size_t e = 0; e < elements; e += field_detail::survey_block) {
+                   const std::size_t last = std::min(e + field_detail::survey_block, elements);
+                   const std::size_t row = space.offset(ElementId(e));
+                   const std::size_t count =
+                       (last < elements ? space.offset(ElementId(last)) : rows) - row;
+                   const double* const block = g.out.data() + row * all;
+                   for (std::size_t m = begin; m < end; ++m)
+                     append_columns(block + first[m], all, count, components[m], buffer, parts[m]);
+                   for (std::size_t c = first[begin]; look && c < first[end]; c += lanes) {
+                     const std::size_t some = std::min(lanes, first[end] - c);
+                     buffer.resize(count * lanes);
+                     for (std::size_t n = 0; n < count; ++n)
+                       std::copy_n(block + n * all + c, some, buffer.data() + n * lanes);
+                     field_detail::look(space, aim, {e, last, c, some, lanes, buffer.data()},
+                                        survey, scratch);
+                   }
+                 }
+               },
+               threads);
   return parts;
 }
 

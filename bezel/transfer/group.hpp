@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "bezel/field/field.hpp"
+#include "bezel/field/survey.hpp"
 #include "bezel/numeric/numbers.hpp"
 #include "bezel/transfer/overlay_mesh.hpp"
 
@@ -22,10 +22,28 @@ struct DonorDegree {
   int uniform = -1;  ///< -1 when they differ
 };
 
+/// Coefficients of one element times multinomials, shape (components, n): kept by the group, or
+/// made for the caller.
+class ScaledCoefficients {
+ public:
+  explicit ScaledCoefficients(std::span<const double> kept) : all_(kept) {}
+  explicit ScaledCoefficients(std::vector<double> made) : own_(std::move(made)), all_(own_) {}
+  ScaledCoefficients(const ScaledCoefficients&) = delete;
+  ScaledCoefficients& operator=(const ScaledCoefficients&) = delete;
+  const double* data() const { return all_.data(); }
+  std::size_t size() const { return all_.size(); }
+  operator std::span<const double>() const { return all_; }
+
+ private:
+  std::vector<double> own_;
+  std::span<const double> all_;
+};
+
 /// The components of all donor fields that share a donor space and go to the same target space.
 struct Group {
   Group(Group&&) noexcept = default;
   Group& operator=(Group&&) noexcept = default;
+  /// @param fields  must stay until drop_donor()
   Group(const OverlayMesh& donor, const OverlayMesh& target, std::span<const Field* const> fields,
         std::shared_ptr<const Space> target_space, int threads);
   /// The donor's basis functions as components: component c is basis function c of every element
@@ -51,10 +69,11 @@ struct Group {
   /// Affine triangles on which the target's polynomials are computed: straight elements themselves,
   /// else the space's own frames.
   std::span<const Frame> target_frame;
-  Numbers scaled;                       ///< donor coefficients times multinomials, per element
-                                        ///< [component][n]; of basis functions per degree
-  std::vector<double> donor_integrals;  ///< of the donor's basis functions; not of basis groups
-  std::vector<double> donor_mass;       ///< per element [component]
+  std::vector<double> donor_mass;  ///< per element [component]
+  /// Of groups of fields: what is known of the donor space, and of the fields (but for the
+  /// integrals, which are donor_mass).
+  std::shared_ptr<field_detail::SpaceMeasures> donor_measures;
+  field_detail::Survey donor_survey;
   /// Coefficients of the monomials in the barycentrics less 1/3, per element [n][component]: of
   /// donors that are not mapped and have at most max_moment_degree.
   Numbers powers;
@@ -62,7 +81,7 @@ struct Group {
 
   /// Whether the components are the donor's basis functions.
   bool of_basis() const { return !scaled_offset_.empty(); }
-  std::span<const double> donor_scaled(std::int32_t e) const;
+  ScaledCoefficients donor_scaled(std::int32_t e) const;
   const double* donor_powers(std::int32_t e) const {
     return powers.data() + donor_space->offset(ElementId(e)) * static_cast<std::size_t>(components);
   }
@@ -79,16 +98,24 @@ struct Group {
   }
 
  private:
+  /// Whether all donor polynomials are integrated as powers, but for a few.
+  bool by_powers() const;
   void make_powers(std::size_t elements, int threads);
   void make_frames(const OverlayMesh& donor, const OverlayMesh& target, int threads);
+  Numbers scaled_;  // donor coefficients times multinomials, per element
+                    // [component][n]; of basis functions per degree; empty
+                    // where they are taken from the fields
+  std::vector<field_detail::Column> fields_;                 // of groups of fields
   std::vector<std::size_t> scaled_offset_;                   // per degree, for basis functions
   std::vector<Frame> made_donor_frame_, made_target_frame_;  // those that no space has
 };
 
 /// The coefficients of a group's fields, one field after the other; taken out of the group.
 /// @param components  of each field
+/// @param aim         what to look for in the coefficients on the way
 std::vector<std::vector<double>> take_fields(Group& g, std::span<const std::size_t> components,
-                                             int threads);
+                                             const field_detail::SurveyAim& aim,
+                                             field_detail::Survey& survey, int threads);
 
 /// Where point x lies for the polynomial of donor element d: barycentrics 1 and 2 in its frame, or
 /// in the reference triangle when it is mapped. `warm`: the last barycentrics found in d, when

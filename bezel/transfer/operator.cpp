@@ -337,8 +337,7 @@ TransferResult TransferOperator::transfer(std::span<const Field> donors, const B
                           outside,
                           made,
                           {},
-                          defect,
-                          {}});
+                          defect});
     const auto lines = reports.lines(k);
     for (std::size_t c = 0; c < limited.size(); ++c) {
       lines[c].min_after = limited[c].range.lo;

@@ -8,36 +8,36 @@
 
 namespace bezel::detail {
 
-Reports::Measures& Reports::measures(const std::shared_ptr<const Space>& space) {
+using field_detail::Survey;
+using field_detail::SurveyAim;
+
+field_detail::SpaceMeasures& Reports::measures(const std::shared_ptr<const Space>& space) {
   for (const auto& known : measures_)
-    if (known->space == space) return *known;
-  measures_.push_back(std::make_unique<Measures>());
-  measures_.back()->space = space;
+    if (known->space() == space) return *known;
+  measures_.push_back(std::make_shared<field_detail::SpaceMeasures>(space, threads_));
   return *measures_.back();
 }
 
-void Reports::know(const std::shared_ptr<const Space>& space, std::vector<double> basis_integrals) {
-  measures(space).basis_integrals = std::move(basis_integrals);
-}
-
-std::vector<double> Reports::element_masses(std::span<const Field* const> fields) {
-  Measures& m = measures(*fields.front());
-  if (m.basis_integrals.empty())
-    m.basis_integrals = field_detail::basis_integrals(*m.space, threads_);
-  return field_detail::element_integrals(fields, m.basis_integrals, threads_);
+void Reports::know(std::shared_ptr<field_detail::SpaceMeasures> measures) {
+  measures_.push_back(std::move(measures));
 }
 
 void Reports::add(std::span<const std::size_t> places, const MovedFields& fields) {
   const std::size_t components = field_detail::component_count(fields.donors);
-  std::vector<double> found;
-  if (fields.element_mass.empty()) found = element_masses(fields.donors);
-  const std::span<const double> own = found.empty() ? fields.element_mass : found;
-  const auto before = field_detail::integral(own, components);
-  const auto after = field_detail::integral(element_masses(fields.moved), components);
-  Measures& of_donor = measures(*fields.donors.front());
-  if (!of_donor.abs_integral)
-    of_donor.abs_integral = std::make_unique<field_detail::AbsIntegral>(of_donor.space, threads_);
-  const auto size = (*of_donor.abs_integral)(fields.donors, own, threads_);
+  const auto survey = [&](std::span<const Field* const> of, bool absolute) {
+    field_detail::SpaceMeasures& m = measures(of.front()->space_ptr());
+    const SurveyAim aim{m.basis_integrals(), absolute ? &m.absolute() : nullptr, &m.ranges()};
+    return field_detail::survey(*m.space(), field_detail::columns_of(of), aim, threads_);
+  };
+  const Survey found_before = fields.before != nullptr ? Survey{} : survey(fields.donors, true);
+  const Survey found_after = fields.after != nullptr ? Survey{} : survey(fields.moved, false);
+  const Survey& of_donors = fields.before != nullptr ? *fields.before : found_before;
+  const Survey& of_moved = fields.after != nullptr ? *fields.after : found_after;
+  const auto before = field_detail::integral(of_donors.integrals, components);
+  const auto after = field_detail::integral(of_moved.integrals, components);
+  const auto size = field_detail::integral(of_donors.absolute, components);
+  const auto bounds_before = std::make_shared<const field_detail::BlockBounds>(of_donors.bounds),
+             bounds_after = std::make_shared<const field_detail::BlockBounds>(of_moved.bounds);
   std::size_t c = 0;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const Field& donor = *fields.donors[k];
@@ -55,35 +55,40 @@ void Reports::add(std::span<const std::size_t> places, const MovedFields& fields
       const double scale = size[c] > 0.0 ? size[c] : 1.0;
       line.relative_mass_defect = std::abs(defect) / scale;
       line.max_element_defect = fields.element_defect[c] / scale;
-      add(places[k], donor, *fields.moved[k], std::move(line));
+      seek(places[k], std::move(line), {&donor, bounds_before, c},
+           {fields.moved[k], bounds_after, c});
     }
   }
 }
 
 void Reports::add(std::size_t place, const Field& donor, const Field& moved, FieldReport line) {
+  seek(place, std::move(line), {&donor, nullptr, 0}, {&moved, nullptr, 0});
+}
+
+void Reports::seek(std::size_t place, FieldReport line, Sought before, Sought after) {
   line.min_after = -std::numeric_limits<double>::infinity();
   line.max_after = std::numeric_limits<double>::infinity();
-  sought_.push_back({&donor, &moved, place, lines_[place].size()});
+  for (Sought* s : {&before, &after}) {
+    s->before = s == &before;
+    s->place = place;
+    s->line = lines_[place].size();
+    sought_.push_back(std::move(*s));
+  }
   lines_[place].push_back(std::move(line));
 }
 
 std::vector<FieldReport> Reports::finish() {
-  const auto prepare = [&](const Field& f) {
-    Measures& m = measures(f);
-    if (!m.ranges) m.ranges = std::make_unique<ValueRanges>(f.space_ptr(), threads_);
-  };
-  for (const Sought& s : sought_) {
-    prepare(*s.donor);
-    prepare(*s.moved);
-  }
+  for (const Sought& s : sought_) measures(s.field->space_ptr()).ranges();
   parallel_for(
-      2 * sought_.size(),
+      sought_.size(),
       [&](std::size_t i) {
-        const Sought& s = sought_[i / 2];
+        const Sought& s = sought_[i];
         FieldReport& line = lines_[s.place][s.line];
-        const Field& field = i % 2 == 0 ? *s.donor : *s.moved;
-        const bernstein::Range range = (*measures(field).ranges)(field, line.component);
-        if (i % 2 == 0) {
+        const ValueRanges& ranges = measures(s.field->space_ptr()).ranges();
+        const bernstein::Range range = s.bounds
+                                           ? ranges(*s.field, line.component, *s.bounds, s.number)
+                                           : ranges(*s.field, line.component);
+        if (s.before) {
           line.min_before = range.lo;
           line.max_before = range.hi;
         } else {

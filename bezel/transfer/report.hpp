@@ -5,8 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "bezel/field/element_range.hpp"
-#include "bezel/field/integrals.hpp"
+#include "bezel/field/survey.hpp"
 #include "bezel/transfer/transfer.hpp"
 
 namespace bezel::detail {
@@ -17,8 +16,8 @@ struct MovedFields {
   std::span<const Field*const> donors, moved;
   std::span<const double> outside, made, spread;  ///< masses
   std::span<const double> element_defect;         ///< largest |element mass - mass received|
-  std::span<const double> element_mass;           ///< of the donors, shape (elements, components);
-                                                  ///< empty: not known
+  /// Of the donors with integrals of |f|, and of what they became; null: not known.
+  const field_detail::Survey *before = nullptr, *after = nullptr;
 };
 
 /// The lines of a report, one per component of a field that was moved. What depends on the elements
@@ -29,8 +28,9 @@ class Reports {
   /// @param fields  how many donor fields there are: their lines come in that order
   Reports(std::size_t fields, int threads) : lines_(fields), threads_(threads) {}
 
-  /// Saves the work where the integrals of a space's basis functions are known already.
-  void know(const std::shared_ptr<const Space>& space, std::vector<double> basis_integrals);
+  /// Saves the work where a space has been measured already.
+  void know(std::shared_ptr<field_detail::SpaceMeasures> measures);
+  field_detail::SpaceMeasures& measures(const std::shared_ptr<const Space>& space);
 
   /// Adds the lines of some fields; they must stay where they are until finish().
   /// @param places  numbers of the fields
@@ -45,24 +45,19 @@ class Reports {
   std::vector<FieldReport> finish();
 
  private:
-  struct Measures {
-    std::shared_ptr<const Space> space;
-    std::vector<double> basis_integrals;
-    std::unique_ptr<field_detail::AbsIntegral> abs_integral;
-    std::unique_ptr<ValueRanges> ranges;
-  };
+  /// A range that is sought, and what is known of it.
   struct Sought {
-    const Field* donor;
-    const Field* moved;
-    std::size_t place, line;
+    const Field* field;
+    std::shared_ptr<const field_detail::BlockBounds> bounds;  // null: nothing is known
+    std::size_t number;                                       // of the component there
+    std::size_t place = 0, line = 0;
+    bool before = false;
   };
-  Measures& measures(const std::shared_ptr<const Space>& space);
-  Measures& measures(const Field& field) { return measures(field.space_ptr()); }
-  std::vector<double> element_masses(std::span<const Field* const> fields);
+  void seek(std::size_t place, FieldReport line, Sought before, Sought after);
 
   std::vector<std::vector<FieldReport>> lines_;
   std::vector<Sought> sought_;
-  std::vector<std::unique_ptr<Measures>> measures_;
+  std::vector<std::shared_ptr<field_detail::SpaceMeasures>> measures_;
   int threads_;
 };
 

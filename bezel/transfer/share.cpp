@@ -118,7 +118,7 @@ void write_group(const Share& share, const Group& g, const OverlayMesh& donor_me
   std::vector<double> mass;
   for (const std::int32_t d : share.donors) {
     const auto own = g.donor_scaled(d);
-    scaled.insert(scaled.end(), own.begin(), own.end());
+    scaled.insert(scaled.end(), own.data(), own.data() + own.size());
     const double* own_mass = g.donor_mass.data() + place(d) * nc;
     mass.insert(mass.end(), own_mass, own_mass + nc);
   }

@@ -218,7 +218,9 @@ TransferResult detail::transfer_by(const Crew& crew, std::span<const Field> dono
 
   std::vector<std::optional<Field>> fields(donors.size());
   detail::Reports reports(donors.size(), options.threads);
-  for (detail::Group& g : plan.groups) reports.know(g.donor_space, std::move(g.donor_integrals));
+  for (const detail::Group& g : plan.groups) reports.know(g.donor_measures);
+  // What is taken as it was found is measured on the way.
+  const bool as_found = !bounds && added.element.empty();
   std::size_t c0 = 0;
   for (std::size_t k = 0; k < plan.groups.size(); ++k) {
     detail::Group& g = plan.groups[k];
@@ -227,8 +229,14 @@ TransferResult detail::transfer_by(const Crew& crew, std::span<const Field> dono
     std::vector<std::size_t> field_components;
     for (const std::size_t i : members)
       field_components.push_back(static_cast<std::size_t>(donors[i].components()));
+    field_detail::SurveyAim aim;
+    if (as_found) {
+      field_detail::SpaceMeasures& measures = reports.measures(g.target_space);
+      aim = {measures.basis_integrals(), nullptr, &measures.ranges()};
+    }
+    field_detail::Survey after;
     std::vector<std::vector<double>> parted =
-        detail::take_fields(g, field_components, options.threads);
+        detail::take_fields(g, field_components, aim, after, options.threads);
     std::vector<double> spread_mass(nc, 0.0), spread_change(nc, 0.0);
     for (std::size_t a = 0; a < added.element.size(); ++a) {
       const ElementId e(added.element[a]);
@@ -247,32 +255,34 @@ TransferResult detail::transfer_by(const Crew& crew, std::span<const Field> dono
         }
       }
     }
-    std::vector<const Field*> before, after;
+    std::vector<const Field*> given, moved;
     std::vector<detail::Limited> limited;
     for (std::size_t m = 0; m < members.size(); ++m) {
-      const Field& given = donors[members[m]];
+      const Field& donor_field = donors[members[m]];
       std::optional<Field>& field = fields[members[m]];
-      field.emplace(given.name(), g.target_space, std::move(parted[m]), given.components());
+      field.emplace(donor_field.name(), g.target_space, std::move(parted[m]),
+                    donor_field.components());
       const std::size_t first = limited.size();
-      for (int c = 0; bounds && c < given.components(); ++c) {
+      for (int c = 0; bounds && c < donor_field.components(); ++c) {
         if (!continuous.empty()) {
           limited.push_back(std::move(continuous[k].limited[limited.size()]));
         } else {
-          limited.push_back(detail::limit_discontinuous(*field, c, (*bounds)(given, c),
+          limited.push_back(detail::limit_discontinuous(*field, c, (*bounds)(donor_field, c),
                                                         target.element_area, options.threads));
         }
       }
       if (bounds)
         field.emplace(detail::with_coefficients(*field, std::span(limited).subspan(first)));
-      before.push_back(&given);
-      after.push_back(&*field);
+      given.push_back(&donor_field);
+      moved.push_back(&*field);
     }
     const std::vector<double> element_defect = continuous.empty()
                                                    ? std::vector<double>(nc, swept.max_mass_defect)
                                                    : continuous[k].max_element_change;
-    reports.add(members,
-                {before, after, std::span(outside).subspan(c0, nc),
-                 std::span(swept.made).subspan(c0, nc), spread_mass, element_defect, g.donor_mass});
+    g.donor_survey.integrals = std::move(g.donor_mass);
+    reports.add(members, {given, moved, std::span(outside).subspan(c0, nc),
+                          std::span(swept.made).subspan(c0, nc), spread_mass, element_defect,
+                          &g.donor_survey, as_found ? &after : nullptr});
     std::size_t place = 0;
     for (const std::size_t i : members) {
       for (FieldReport& line : reports.lines(i)) {
