@@ -56,9 +56,10 @@ std::size_t ElementTransfer::begin_together(std::span<const std::int32_t> elemen
     pieces += own.pieces.size();
     ++count;
   }
+  const std::size_t looked_at = std::min(count + 1, most);  // the last may not be ordinary
   batch.elements = count;
   batch.first_region[count] = regions;
-  if (count == 0) return count;
+  if (count == 0) return looked_at;
   const std::span<const std::int32_t> here = elements.subspan(first, count);
   // The lists of elements that follow each other do, too.
   const std::span<const BoundaryPiece> all_pieces{overlays[first].pieces.data(), pieces};
@@ -100,7 +101,7 @@ std::size_t ElementTransfer::begin_together(std::span<const std::int32_t> elemen
                                     [](bool ready) { return ready; });
   const Group& g = groups_[0];
   together_.solved = groups_.size() == 1 && g.components == 1 && target_.degree == 1;
-  if (!together_.solved) return count;
+  if (!together_.solved) return looked_at;
   std::array<double*, lanes> out{};
   std::array<double, static_cast<std::size_t>(bernstein::triangle_size(max_moment_degree))> nowhere;
   for (std::size_t k = 0; k < count; ++k)
@@ -115,7 +116,7 @@ std::size_t ElementTransfer::begin_together(std::span<const std::int32_t> elemen
         static_cast<double>(timed_batches) *
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
-  return count;
+  return looked_at;
 }
 
 void ElementTransfer::sum_together(std::size_t i, std::span<const std::int32_t> elements,
