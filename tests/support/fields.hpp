@@ -33,6 +33,11 @@ inline std::span<const Formula> one(const Formula& f) {
   return {&f, 1};
 }
 
+/// Whether two fields have as many coefficients and each the same value.
+inline bool same_coefficients(const Field& a, const Field& b) {
+  return std::ranges::equal(a.coefficients(), b.coefficients());
+}
+
 /// Largest difference of two fields of one component on one mesh, at a lattice of points in each
 /// element.
 inline double largest_difference(const Field& a, const Field& b) {

@@ -20,13 +20,13 @@ INSTANTIATE_TEST_SUITE_P(Seeds, ElementsAlone,
                          ::testing::Range(std::uint64_t{0}, std::uint64_t{5 * field_pair_kinds}));
 
 // Where planes are shared by thin elements: donors that were there for another element continued a
-// field. In the second one they are in another share.
-INSTANTIATE_TEST_SUITE_P(GapsOfThinElements, ElementsAlone, ::testing::Values(75U, 433U));
+// field. In the last one they are in another share.
+INSTANTIATE_TEST_SUITE_P(GapsOfThinElements, ElementsAlone, ::testing::Values(75U, 156U, 433U));
 
-// Open joints of an element before were seen in the first two, sums of a thin donor in the others,
-// and in few besides.
+// Open joints of an element before were seen in the first three, sums of a thin donor in the
+// others, and in few besides.
 INSTANTIATE_TEST_SUITE_P(FewOfAKind, ElementsAlone,
-                         ::testing::Values(122U, 156U, 126U, 133U, 153U));
+                         ::testing::Values(122U, 257U, 379U, 126U, 133U, 153U));
 
 }  // namespace
 }  // namespace bezel::test

@@ -18,6 +18,7 @@ using test::bend;
 using test::grid_mesh;
 using test::largest_difference;
 using test::one;
+using test::same_coefficients;
 using test::turn;
 
 TransferOptions to_continuous(int degree = -1) {
@@ -267,9 +268,7 @@ TEST(ContinuousTransfer, VectorsAndSeveralFieldsEqualOneByOne) {
     ASSERT_EQ(together.report.fields.size(), 3U);
     for (std::size_t i = 0; i < 2; ++i) {
       const TransferResult alone = transfer({&fields[i], 1}, target, options);
-      EXPECT_TRUE(std::equal(alone.fields[0].coefficients().begin(),
-                             alone.fields[0].coefficients().end(),
-                             together.fields[i].coefficients().begin()));
+      EXPECT_TRUE(same_coefficients(alone.fields[0], together.fields[i]));
     }
   }
 }
@@ -286,9 +285,7 @@ TEST(ContinuousTransfer, SameBitsForAnyNumberOfThreads) {
   EXPECT_GT(single.report.fields[0].mass_solve->iterations, 0);
   options.threads = 4;
   const TransferResult several = transfer({&f, 1}, target, options);
-  EXPECT_TRUE(std::equal(single.fields[0].coefficients().begin(),
-                         single.fields[0].coefficients().end(),
-                         several.fields[0].coefficients().begin()));
+  EXPECT_TRUE(same_coefficients(single.fields[0], several.fields[0]));
 }
 
 TEST(ContinuousTransfer, BadOptionsAreRefused) {

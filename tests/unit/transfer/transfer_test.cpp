@@ -20,6 +20,7 @@ using test::grid_mesh;
 using test::largest_difference;
 using test::message_of;
 using test::one;
+using test::same_coefficients;
 using test::same_place;
 using test::turn;
 
@@ -161,9 +162,7 @@ TEST(Transfer, SameBitsForAnyNumberOfThreads) {
     const TransferResult single = transfer(std::span(&f, 1), target, options);
     options.threads = 4;
     const TransferResult several = transfer(std::span(&f, 1), target, options);
-    EXPECT_TRUE(std::equal(single.fields[0].coefficients().begin(),
-                           single.fields[0].coefficients().end(),
-                           several.fields[0].coefficients().begin()));
+    EXPECT_TRUE(same_coefficients(single.fields[0], several.fields[0]));
     EXPECT_EQ(single.report.crossings, several.report.crossings);
     EXPECT_EQ(single.report.fields[0].mass_outside, several.report.fields[0].mass_outside);
   }
@@ -184,9 +183,7 @@ TEST(Transfer, VectorsAndSeveralDegreesInOnePassEqualOneByOne) {
   ASSERT_EQ(together.report.fields.size(), 3U);
   for (std::size_t i = 0; i < 2; ++i) {
     const TransferResult alone = transfer(std::span(&fields[i], 1), target);
-    EXPECT_TRUE(std::equal(alone.fields[0].coefficients().begin(),
-                           alone.fields[0].coefficients().end(),
-                           together.fields[i].coefficients().begin()));
+    EXPECT_TRUE(same_coefficients(alone.fields[0], together.fields[i]));
   }
 }
 
@@ -199,8 +196,7 @@ TEST(Transfer, ContinuousDonorsAreReadLikeAnyOther) {
   const Field discontinuous("u", Space::discontinuous(donor, 2), c);
   const TransferResult a = transfer(std::span(&continuous, 1), target);
   const TransferResult b = transfer(std::span(&discontinuous, 1), target);
-  EXPECT_TRUE(std::equal(a.fields[0].coefficients().begin(), a.fields[0].coefficients().end(),
-                         b.fields[0].coefficients().begin()));
+  EXPECT_TRUE(same_coefficients(a.fields[0], b.fields[0]));
 }
 
 // Two discretisations of one disc: neither covers the other.
