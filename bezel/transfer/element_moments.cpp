@@ -90,15 +90,19 @@ ElementTransfer::RunShape ElementTransfer::run_shape(std::span<const Segment> ru
   shape.centre = origin_ + centre;
   bridges_.clear();
   shape.gap = loose_ ? bridge_joints() : norm(sum);
+  for (Vec2& p : piece_control_) p -= centre;
+  shape.area = 0.5 * twice_piece_area();
+  return shape;
+}
+
+double ElementTransfer::twice_piece_area() const {
   double twice = 0.0;
-  Vec2* p = piece_control_.data();
+  const Vec2* p = piece_control_.data();
   for (const int degree : piece_degree_) {
-    for (int i = 0; i <= degree; ++i) p[i] -= centre;
     twice += degree == 1 ? cross(p[0], p[1]) : twice_area(p, degree, area_weights(degree));
     p += degree + 1;
   }
-  shape.area = 0.5 * twice;
-  return shape;
+  return twice;
 }
 
 bool ElementTransfer::by_moments(const Group& g, std::int32_t t, std::int32_t d) {
@@ -157,11 +161,17 @@ bool ElementTransfer::add_pair_moments(const Group& g, std::int32_t t, std::int3
 }
 
 void ElementTransfer::add_apart(std::size_t i, std::int32_t t, std::int32_t d,
-                                std::span<const Segment> run, double area, std::span<double> mass) {
+                                std::span<const Segment> run, double area, bool thin,
+                                std::span<double> mass) {
   const Group& g = groups_[i];
+  taken_ = std::span(base_[i]).first(static_cast<std::size_t>(g.components));
+  if (thin) {
+    extended_[i] = 1;
+    add_thin_pair(g, t, d, run, area, sums_[i], mass);
+    return;
+  }
   const RunShape shape = run_shape(run);
   if (add_pair_moments(g, t, d, shape, base_[i].data(), moment_sums_[i], mass)) return;
-  taken_ = std::span(base_[i]).first(static_cast<std::size_t>(g.components));
   extended_[i] = 1;
   add_pair(g, t, d, run, area, shape.centre, sums_[i], mass);
 }
@@ -223,6 +233,13 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
   bridged_.assign(own.donors.size(), 0);
   const auto note = [&](std::size_t k) {
     const std::int32_t d = own.donors[k];
+    if (thin_region_[k] != 0) {
+      const RunShape shape = thin_shape(t, d, run_of(own, k), false);
+      area_.push_back(shape.area);
+      bridged_[k] = 1;
+      note_thin_region(t, d, shape, outcome);
+      return;
+    }
     RunShape shape = run_shape(run_of(own, k));
     if (!loose_ && !is_closed(t, d, shape.gap)) {
       loose_ = true;
@@ -254,6 +271,10 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
   const double own_size = target_.element_diameter[static_cast<std::size_t>(t)];
   for (std::size_t k = 0; k < own.donors.size(); ++k) {
+    if (thin_region_[k] != 0) {
+      note(k);
+      continue;
+    }
     const std::int32_t d = own.donors[k];
     const double* sums = batch_.region(k);
     const double* open = sums + batch_.open;
@@ -329,7 +350,8 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
   }
   for (std::size_t k = 0; k < count; ++k) {
     if (!regions[k].far && (bridged_[k] == 0 || own.donors[k] == exterior)) continue;
-    add_apart(i, t, own.donors[k], run_of(own, k), area_[k], mass.subspan(k * nc, nc));
+    add_apart(i, t, own.donors[k], run_of(own, k), area_[k], thin_region_[k] != 0,
+              mass.subspan(k * nc, nc));
   }
 }
 

@@ -21,6 +21,7 @@
 #include "bezel/transfer/overlay.hpp"
 #include "bezel/transfer/pair_fit.hpp"
 #include "bezel/transfer/piece_batch.hpp"
+#include "bezel/transfer/thin_region.hpp"
 #include "bezel/transfer/transfer.hpp"
 
 namespace bezel::detail {
@@ -111,6 +112,8 @@ class ElementTransfer {
   };
   /// Also fills piece_control_ and bridges_.
   RunShape run_shape(std::span<const Segment> run);
+  /// Of what piece_control_ holds, from the origin.
+  double twice_piece_area() const;
   double bridge_joints();
   /// Starts and steps of bridges_ in the plane.
   std::span<const std::array<Vec2, 2>> plane_bridges();
@@ -135,6 +138,35 @@ class ElementTransfer {
   void give_strips(std::int32_t t, const ElementPieces& own, std::size_t components,
                    GivenList& given, std::span<double> made, ElementBlocks* blocks);
   double largest_partition_residual(std::int32_t t) const;
+  // Thin elements that cross (element_thin.cpp).
+  void find_thin_donors();
+  bool is_thin_donor(std::int32_t d) const {
+    return d != exterior && !thin_donor_.empty() && thin_donor_[static_cast<std::size_t>(d)] != 0;
+  }
+  bool has_thin_donor(const ElementPieces& own) const;
+  /// The strip between both parts of a segment, about as give_strips() has it.
+  void begin_thin_strip(std::int32_t t, std::int32_t d, const Segment& segment);
+  double thin_strip_width(double s) const;
+  /// Where its point on the target's part lies in a donor.
+  std::array<double, 2> thin_strip_place(const Group& g, std::int32_t d, double s);
+  LinearPlace thin_linear_place(const Group& g, std::int32_t d) const;
+  void find_thin_regions(std::int32_t t, const ElementPieces& own);
+  /// As run_shape(), from the centre of thin_ and in its plane.
+  RunShape thin_shape(std::int32_t t, std::int32_t d, std::span<const Segment> run,
+                      bool donors_plane);
+  void note_thin_region(std::int32_t t, std::int32_t d, const RunShape& shape,
+                        ElementOutcome& outcome) const;
+  void thin_nodes(int degree);
+  /// Calls visit(weight, x) at the points of a rule that is exact for the given degree in the
+  /// plane.
+  template <class Visit>
+  void thin_fan(int degree, const Visit& visit);
+  /// `points` on each piece of a target edge.
+  void thin_reference_nodes(std::int32_t d, std::span<const Segment> run, int degree, int points);
+  template <class Visit>
+  void thin_reference_fan(const std::array<double, 2>& centre, int degree, const Visit& visit);
+  void add_thin_pair(const Group& g, std::int32_t t, std::int32_t d, std::span<const Segment> run,
+                     double area, Accumulators& sums, std::span<double> mass);
   // By moments (element_moments.cpp).
   static bool by_moments(const Group& g, std::int32_t t, std::int32_t d);
   const PieceTable& piece_table(int degree, int moments);
@@ -142,7 +174,7 @@ class ElementTransfer {
                         const double* base, Accumulators& sums, std::span<double> mass);
   /// By moments about the region's own centre, or by quadrature.
   void add_apart(std::size_t i, std::int32_t t, std::int32_t d, std::span<const Segment> run,
-                 double area, std::span<double> mass);
+                 double area, bool thin, std::span<double> mass);
   void moments_to_powers(std::size_t i, std::int32_t t);
   /// Sets moments_ to those of target element t in its coordinates.
   void element_moments(const Group& g, std::int32_t t, int degree);
@@ -212,6 +244,8 @@ class ElementTransfer {
   const Factor& factor(const Group& g, std::int32_t t, std::span<const double> whole);
   /// Makes room for `more` points in the arrays.
   void reserve_points(std::size_t more);
+  /// Takes the points from number `first` to `last` out.
+  void drop_points(std::size_t first, std::size_t last);
   void push(double w, double tu, double tv, double du, double dv) {
     const std::size_t i = count_++;
     w_[i] = w;
@@ -228,6 +262,8 @@ class ElementTransfer {
                                     std::array<double, 3>& warm, bool& have_warm) const;
   void reference_nodes(const OverlayMesh& mesh, std::int32_t element, std::span<const Segment> run,
                        bool source, int degree);
+  /// Nodes along a part of an element's own side, which is straight in the reference triangle.
+  void own_side_nodes(const OverlayMesh& mesh, std::int32_t element, const Part& own, int degree);
   std::array<double, 2> reference_centre() const;  // mean of the reference nodes
   template <class Visit>
   void reference_fan(const OverlayMesh& mesh, std::int32_t element,
@@ -259,11 +295,15 @@ class ElementTransfer {
   std::vector<double> moments_;
   PieceBatch batch_;
   std::vector<BatchRegion> regions_;
-  std::vector<double> area_;           // by region
-  std::vector<std::uint8_t> bridged_;  // by region: has bridges
-  std::vector<double> region_mass_;    // of one group, [region][component]
-  std::vector<Segment> segments_;      // of this element, when have_segments_
-  std::vector<std::size_t> run_end_;   // by region
+  std::vector<double> area_;               // by region
+  std::vector<std::uint8_t> bridged_;      // by region: has bridges
+  std::vector<double> region_mass_;        // of one group, [region][component]
+  std::vector<std::uint8_t> thin_donor_;   // by donor element; empty: none is thin
+  std::vector<std::uint8_t> thin_region_;  // by region: by thin_shape() and add_thin_pair()
+  ThinRegion thin_;
+  MappedElement thin_donor_map_, thin_target_map_;
+  std::vector<Segment> segments_;     // of this element, when have_segments_
+  std::vector<std::size_t> run_end_;  // by region
   bool have_segments_ = false;
   std::vector<double> w_, tu_, tv_, du_, dv_;  // quadrature points, the first count_ in use
   std::size_t count_ = 0;
