@@ -15,6 +15,7 @@
 #include "bezel/transfer/transfer.hpp"
 #include "support/exact_integrals.hpp"
 #include "support/mesh_pairs.hpp"
+#include "support/slow_projection.hpp"
 
 namespace bezel {
 namespace {
@@ -293,6 +294,75 @@ TEST_P(FlatMeshes, ThinRowsAcrossThinRows) {
   const auto rows = thin_rows(GetParam(), 0), columns = thin_rows(GetParam(), 1);
   expect_exact(rows, columns, Uncovered::extend, "rows to columns");
   expect_exact(columns, rows, Uncovered::extend, "columns to rows");
+}
+
+double largest_of(const Field& f) {
+  double largest = 0.0;
+  for (const double c : f.coefficients()) largest = std::max(largest, std::abs(c));
+  return largest;
+}
+
+TransferResult from_thin(const MeshPtr& donor, const MeshPtr& target, Basis basis) {
+  const std::vector<Field> fields = {constant_and_noise(Space::discontinuous(donor, 2, basis))};
+  TransferOptions options;
+  options.degree = 2;
+  options.uncovered = Uncovered::zero;
+  return transfer(fields, target, options);
+}
+
+// Regions by clipping, sums and systems in long double.
+TEST(FlatSweep, ThinDonorsGiveTheProjection) {
+  const auto donor = short_strip(1, 1e-6, 0.3);
+  for (const auto& target : {round_mesh(2, 1), strip(round_mesh(2, 1), 1e-5, 1.0, {{1.0, -0.5}})}) {
+    for (const Basis basis : {Basis::reference, Basis::physical}) {
+      const Field from = constant_and_noise(Space::discontinuous(donor, 2, basis));
+      const TransferResult result = from_thin(donor, target, basis);
+      const Field& to = result.fields[0];
+      const double allowed = 1e-10 * largest_of(to);
+      for (std::size_t t = 0; t < target->element_count(); ++t) {
+        const ElementId e(t);
+        const test::SlowSystem system(to.space(), e);
+        std::vector<test::Real> sums(system.size * 2, 0);
+        for (std::size_t d = 0; d < donor->element_count(); ++d) {
+          const test::SlowRegion region =
+              test::clipped(target->gather(e), donor->gather(ElementId(d)));
+          test::SlowPair pair;
+          ASSERT_TRUE(test::slow_pair({region}, to.space(), e, from, ElementId(d), 6, pair));
+          for (std::size_t n = 0; n < sums.size(); ++n) sums[n] += pair.integrals[n];
+        }
+        for (std::size_t c = 0; c < 2; ++c) {
+          std::vector<test::Real> own(system.size);
+          for (std::size_t n = 0; n < system.size; ++n) own[n] = sums[n * 2 + c];
+          system.solve(own);
+          for (std::size_t n = 0; n < system.size; ++n)
+            EXPECT_NEAR(to.coefficients(e)[n * 2 + c], static_cast<double>(own[n]), allowed);
+        }
+      }
+    }
+  }
+}
+
+// Straight elements of any degree are the same elements, up to the rounding of their control
+// points.
+TEST_P(FlatMeshes, StraightElementsOfAnyDegreeGiveTheSame) {
+  const Vec2 to{{1.0, -0.5}};
+  const auto donor = [&](int g) {
+    return strip(test::grid_mesh(3, g, 1.0, test::same_place), 1e-6, 0.3, to);
+  };
+  const auto round = [&](int g) {
+    return affine(test::grid_mesh(2, g, 1.0, test::same_place), {{2, -0.3}}, {{0.3, 2}}, to);
+  };
+  const auto across = [&](int g) {
+    return strip(test::grid_mesh(2, g, 1.0, test::same_place), 1e-5, 1.4, to);
+  };
+  const int g = GetParam();
+  for (const bool thin : {false, true}) {
+    const auto exact = from_thin(donor(1), thin ? across(1) : round(1), Basis::reference);
+    const auto mapped = from_thin(donor(g), thin ? across(g) : round(g), Basis::reference);
+    const double allowed = 1e-8 * largest_of(exact.fields[0]);
+    for (std::size_t i = 0; i < exact.fields[0].coefficients().size(); ++i)
+      EXPECT_NEAR(mapped.fields[0].coefficients()[i], exact.fields[0].coefficients()[i], allowed);
+  }
 }
 
 TEST_P(FlatMeshes, ThinDonorsGiveTheSameBitsAnywhere) {
