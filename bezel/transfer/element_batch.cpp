@@ -46,7 +46,7 @@ HWY_INLINE Lanes place_block(const ElementBatch& batch, std::size_t first, Regio
   }
   Lanes frame[lanes];
   for (std::size_t l = 0; l < lanes; ++l)
-    std::memcpy(&frame[l], batch.frame[first + l], sizeof(Frame));
+    frame[l] = load(reinterpret_cast<const double*>(batch.frame[first + l]));
   const TargetPlaces& places = batch.places;
   const std::int64_t* const owner = batch.owner.data() + first;
   const TargetLanes target{

@@ -19,10 +19,10 @@ constexpr double most_growth = 256.0;
 }  // namespace
 
 template <class Visit>
-void ElementTransfer::extension_points(const Group& g, std::int32_t t, std::span<const Segment> run,
-                                       const Vec2& centre, ExtensionReport& report,
-                                       const Visit& visit) {
-  Extension extension(g, donor_, target_, search_, t, run, centre);
+void ElementTransfer::extension_points(const Group& g, std::int32_t t, const RegionShape& shape,
+                                       ExtensionReport& report, const Visit& visit) {
+  const Vec2& centre = shape.centre;
+  Extension extension(g, donor_, target_, search_, t, shape.run, centre);
   const int pt = g.target_space->degree(ElementId(t));
   struct Point {
     double w;
@@ -37,14 +37,13 @@ void ElementTransfer::extension_points(const Group& g, std::int32_t t, std::span
   const int pd = g.donor_degree.highest;
   if (g.target_mapped) {
     const int degree = pt + 2 * (target_.degree - 1) + pd + inexact_extra;
-    reference_nodes(target_, t, run, false, degree);
+    reference_nodes(target_, t, shape, false, degree);
     reference_fan(target_, t, reference_centre(), degree,
                   [&](double w, const std::array<double, 2>& q, const Vec2& x) { add(w, q, x); });
   } else {
     const int degree = pt + pd;
-    boundary_nodes(run, degree);
+    boundary_nodes(shape, degree);
     const IntervalRule& radial = rule((degree + 3) / 2);
-    reserve_points(nodes_.size() * radial.node.size());
     for (const Node& node : nodes_) {
       const double kappa = cross(node.x - centre, node.dx);
       for (std::size_t i = 0; i < radial.node.size(); ++i) {
@@ -64,7 +63,7 @@ void ElementTransfer::extension_points(const Group& g, std::int32_t t, std::span
   }
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
   if (!one_donor && swept > 8.0 * std::abs(sum) && std::abs(sum) <= small_gap * own_area) {
-    Extension single(g, donor_, target_, search_, t, run, centre);
+    Extension single(g, donor_, target_, search_, t, shape.run, centre);
     const Extension::Source source = single.at(centre, sum);
     // Its polynomial where that does not grow much, else one value.
     const int degree = g.donor_space->degree(ElementId(source.donor));
@@ -86,9 +85,9 @@ void ElementTransfer::extension_points(const Group& g, std::int32_t t, std::span
   report.widen(extension.report());
 }
 
-void ElementTransfer::add_extension(const Group& g, std::int32_t t, std::span<const Segment> run,
-                                    double area, const Vec2& centre, Accumulators& sums,
-                                    std::span<double> made, ExtensionReport& report) {
+void ElementTransfer::add_extension(const Group& g, std::int32_t t, const RegionShape& shape,
+                                    double area, GroupState& own, std::span<double> made,
+                                    ExtensionReport& report) {
   const int pt = g.target_space->degree(ElementId(t));
   const auto nc = static_cast<std::size_t>(g.components);
   std::vector<double> value(nc);
@@ -112,19 +111,19 @@ void ElementTransfer::add_extension(const Group& g, std::int32_t t, std::span<co
     basis_at(pt, place[0], place[1], phi.data());
     for (std::size_t n = 0; n < phi.size(); ++n) {
       const double weighted = w * phi[n] / factors[n];
-      sums.basis[n] += weighted;
+      own.sums.basis[n] += weighted;
       for (std::size_t c = 0; c < nc; ++c)
-        sums.product[n * nc + c] += weighted * (value[c] + (constant[c] - taken_[c]));
+        own.sums.product[n * nc + c] += weighted * (value[c] + (constant[c] - own.base[c]));
     }
     for (std::size_t c = 0; c < nc; ++c) made[c] += w * value[c];
   };
-  extension_points(g, t, run, centre, report, add);
+  extension_points(g, t, shape, report, add);
   for (std::size_t c = 0; c < nc; ++c) made[c] += constant[c] * area;
 }
 
-void ElementTransfer::extension_blocks(const Group& g, std::int32_t t, std::span<const Segment> run,
-                                       double area, const Vec2& centre, Accumulators& sums,
-                                       ElementBlocks& blocks, ExtensionReport& report) {
+void ElementTransfer::extension_blocks(const Group& g, std::int32_t t, const RegionShape& shape,
+                                       double area, Accumulators& sums, ElementBlocks& blocks,
+                                       ExtensionReport& report) {
   const int pt = g.target_space->degree(ElementId(t));
   const std::size_t columns = blocks.columns;
   const auto functions = static_cast<std::size_t>(bernstein::triangle_size(pt));
@@ -155,7 +154,7 @@ void ElementTransfer::extension_blocks(const Group& g, std::int32_t t, std::span
     }
     for (std::size_t c = 0; c < columns; ++c) blocks.mass[k * columns + c] += w * value[c];
   };
-  extension_points(g, t, run, centre, report, add);
+  extension_points(g, t, shape, report, add);
   // What the rule misses of the area counts with the first point's values, as in add_extension().
   for (std::size_t c = 0; c < columns; ++c) blocks.mass[c] += first[c] * (area - weight);
   blocks.made_donor = blocks.donor;

@@ -29,12 +29,12 @@ double joint_width(const OverlayMesh& mesh, std::int32_t e, const Vec2& step) {
 // joined to the nearest start. Neighbouring regions join the same points, so their bridges cancel
 // in every sum over an element of either mesh, and closed regions have areas and masses that do not
 // depend on where rays start.
-double ElementTransfer::bridge_joints() {
+double ElementTransfer::bridge_joints(RegionShape& shape) {
   piece_starts_.clear();
   piece_ends_.clear();
-  const Vec2* p = piece_control_.data();
+  const Vec2* p = shape.control.data();
   double extent = 0.0;
-  for (const int degree : piece_degree_) {
+  for (const int degree : shape.degree) {
     piece_starts_.push_back(p[0]);
     piece_ends_.push_back(p[degree]);
     extent = std::max({extent, std::abs(p[0].x()), std::abs(p[0].y())});
@@ -82,10 +82,10 @@ double ElementTransfer::bridge_joints() {
     const auto start = take_nearest(end, std::numeric_limits<double>::infinity());
     const Vec2 step = *start - end;
     piece_starts_.erase(start);
-    bridges_.push_back({end, step});
-    piece_control_.push_back(end);
-    piece_control_.push_back(end + step);
-    piece_degree_.push_back(1);
+    shape.bridges.push_back({end, step});
+    shape.control.push_back(end);
+    shape.control.push_back(end + step);
+    shape.degree.push_back(1);
     widest = std::max(widest, norm(step));
   }
   return widest;
@@ -143,8 +143,8 @@ void ElementTransfer::give_strips(std::int32_t t, const ElementPieces& own, std:
       }
       if (near != exterior) {
         given.area[entry] -= area;
-        if (mass_row_[k] >= 0) {
-          const auto row = static_cast<std::size_t>(mass_row_[k]) * components;
+        if (element_.regions[k].mass_row >= 0) {
+          const auto row = static_cast<std::size_t>(element_.regions[k].mass_row) * components;
           for (std::size_t c = 0; c < components; ++c) given.mass[row + c] -= mass[c];
         }
       }
@@ -168,7 +168,7 @@ void ElementTransfer::give_strips(std::int32_t t, const ElementPieces& own, std:
       for (std::size_t c = 0; c < components; ++c) {
         const double change = mass[components + c] - mass[c];
         if (near != exterior && far != exterior) {
-          masses_[c] += change;
+          element_.masses[c] += change;
         } else {
           made[c] -= change;
         }
@@ -200,7 +200,7 @@ double ElementTransfer::largest_partition_residual(std::int32_t t) const {
 // their angle, so an open joint is measured by the area that it opens along an element's edges: up
 // to 142 times the distance in 40000 pairs of thin elements and elements far from the origin.
 void ElementTransfer::note_region(std::int32_t t, std::int32_t d, double area, double gap,
-                                  ElementOutcome& outcome) const {
+                                  std::span<const Bridge> bridges, ElementOutcome& outcome) const {
   const double own_size = target_.element_diameter[static_cast<std::size_t>(t)];
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
   double size = own_size, smaller = own_area;
@@ -219,12 +219,12 @@ void ElementTransfer::note_region(std::int32_t t, std::int32_t d, double area, d
   if (area < -std::max(largest_joint_gap * smaller, distance * size)) outcome.inconsistent = true;
   const double widest = std::max(largest_joint_gap * width, 256.0 * distance);
   if (gap <= widest) return;
-  for (const Bridge& bridge : bridges_) {
+  for (const Bridge& bridge : bridges) {
     double across = joint_width(target_, t, bridge.step);
     if (d != exterior) across = std::min(across, joint_width(donor_, d, bridge.step));
     if (across > widest) outcome.inconsistent = true;
   }
-  if (bridges_.empty()) outcome.inconsistent = true;
+  if (bridges.empty()) outcome.inconsistent = true;
 }
 
 }  // namespace bezel::detail

@@ -69,36 +69,36 @@ Vec2 to_barycentric(const Frame& frame, const Vec2& x) {
 
 }  // namespace
 
-ElementTransfer::RunShape ElementTransfer::run_shape(std::span<const Segment> run) {
-  RunShape shape{};
-  piece_control_.clear();
-  piece_degree_.clear();
+const ElementTransfer::RegionShape& ElementTransfer::shape_of(std::span<const Segment> run) {
+  static const RegionShape none;
+  RegionShape& shape = shape_;
+  shape = none;
+  shape.run = run;
   Vec2 centre;
   Vec2 sum;
   for (const Segment& segment : run) {
     const bool source = segment.target.edge < 0;
     const Part& part = source ? segment.source : segment.target;
     const auto control = (source ? donor_ : target_).edge(part.edge);
-    const std::size_t first = piece_control_.size();
-    append_part(control, part, origin_, piece_control_);
-    piece_degree_.push_back(static_cast<int>(control.size()) - 1);
-    centre += piece_control_[first];
-    sum += piece_control_.back() - piece_control_[first];
+    const std::size_t first = shape.control.size();
+    append_part(control, part, element_.origin, shape.control);
+    shape.degree.push_back(static_cast<int>(control.size()) - 1);
+    centre += shape.control[first];
+    sum += shape.control.back() - shape.control[first];
   }
   centre *= 1.0 / static_cast<double>(run.size());
   shape.relative = centre;
-  shape.centre = origin_ + centre;
-  bridges_.clear();
-  shape.gap = loose_ ? bridge_joints() : norm(sum);
-  for (Vec2& p : piece_control_) p -= centre;
-  shape.area = 0.5 * twice_piece_area();
+  shape.centre = element_.origin + centre;
+  shape.gap = element_.loose ? bridge_joints(shape) : norm(sum);
+  for (Vec2& p : shape.control) p -= centre;
+  shape.area = 0.5 * twice_piece_area(shape);
   return shape;
 }
 
-double ElementTransfer::twice_piece_area() const {
+double ElementTransfer::twice_piece_area(const RegionShape& shape) {
   double twice = 0.0;
-  const Vec2* p = piece_control_.data();
-  for (const int degree : piece_degree_) {
+  const Vec2* p = shape.control.data();
+  for (const int degree : shape.degree) {
     twice += degree == 1 ? cross(p[0], p[1]) : twice_area(p, degree, area_weights(degree));
     p += degree + 1;
   }
@@ -118,18 +118,18 @@ const PieceTable& ElementTransfer::piece_table(int degree, int moments) {
   return *tables_[at];
 }
 
-// In the target's barycentrics about the region's centre; piece_control_ holds the pieces about it.
-// False, and nothing is added, where that loses digits.
+// In the target's barycentrics about the region's centre. False, and nothing is added, where that
+// loses digits.
 bool ElementTransfer::add_pair_moments(const Group& g, std::int32_t t, std::int32_t d,
-                                       const RunShape& shape, const double* base,
-                                       Accumulators& sums, std::span<double> mass) {
+                                       const RegionShape& shape, GroupState& own,
+                                       std::span<double> mass) {
   const int degree = g.target_space->degree(ElementId(t));
   const Frame& target = g.target_frame[static_cast<std::size_t>(t)];
   const Frame& donor = g.donor_frame[static_cast<std::size_t>(d)];
-  local_control_.resize(piece_control_.size());
+  local_control_.resize(shape.control.size());
   double extent = 0.0;
-  for (std::size_t i = 0; i < piece_control_.size(); ++i) {
-    local_control_[i] = to_barycentric(target, piece_control_[i]);
+  for (std::size_t i = 0; i < shape.control.size(); ++i) {
+    local_control_[i] = to_barycentric(target, shape.control[i]);
     extent = std::max({extent, std::abs(local_control_[i].x()), std::abs(local_control_[i].y())});
   }
   const TargetPlace in_plane = place_of(target);
@@ -140,9 +140,9 @@ bool ElementTransfer::add_pair_moments(const Group& g, std::int32_t t, std::int3
   if (std::pow(slope * extent, degree) > steepest_terms) return false;
   moment_pieces_.clear();
   const Vec2* p = local_control_.data();
-  for (const int own : piece_degree_) {
-    moment_pieces_.push_back({p, &piece_table(own, 2 * degree)});
-    p += own + 1;
+  for (const int of_piece : shape.degree) {
+    moment_pieces_.push_back({p, &piece_table(of_piece, 2 * degree)});
+    p += of_piece + 1;
   }
   const auto size = static_cast<std::size_t>(bernstein::triangle_size(2 * degree));
   moments_.resize(size);
@@ -150,13 +150,13 @@ bool ElementTransfer::add_pair_moments(const Group& g, std::int32_t t, std::int3
   for (double& m : moments_) m *= in_plane.area;
 
   RegionPlace place;
-  const Vec2 in_target = to_barycentric(target, (origin_ - target.centre) + shape.relative);
-  const Vec2 in_donor = to_barycentric(donor, (origin_ - donor.centre) + shape.relative);
+  const Vec2 in_target = to_barycentric(target, (element_.origin - target.centre) + shape.relative);
+  const Vec2 in_donor = to_barycentric(donor, (element_.origin - donor.centre) + shape.relative);
   place.in_target = {in_target[0], in_target[1]};
   place.in_donor = {in_donor[0], in_donor[1]};
   place.to_donor = {first[0], second[0], first[1], second[1]};
-  add_region(degree, place, moments_.data(), g.components, g.donor_powers(d), base,
-             sums.product.data(), sums.basis.data(), mass.data());
+  add_region(degree, place, moments_.data(), g.components, g.donor_powers(d), own.base.data(),
+             own.moments.product.data(), own.moments.basis.data(), mass.data());
   return true;
 }
 
@@ -164,16 +164,16 @@ void ElementTransfer::add_apart(std::size_t i, std::int32_t t, std::int32_t d,
                                 std::span<const Segment> run, double area, bool thin,
                                 std::span<double> mass) {
   const Group& g = groups_[i];
-  taken_ = std::span(base_[i]).first(static_cast<std::size_t>(g.components));
+  GroupState& own = element_.groups[i];
   if (thin) {
-    extended_[i] = 1;
-    add_thin_pair(g, t, d, run, area, sums_[i], mass);
+    begin_sums(i);
+    add_thin_pair(g, t, d, run, area, own, mass);
     return;
   }
-  const RunShape shape = run_shape(run);
-  if (add_pair_moments(g, t, d, shape, base_[i].data(), moment_sums_[i], mass)) return;
-  extended_[i] = 1;
-  add_pair(g, t, d, run, area, shape.centre, sums_[i], mass);
+  const RegionShape& shape = shape_of(run);
+  if (add_pair_moments(g, t, d, shape, own, mass)) return;
+  begin_sums(i);
+  add_pair(g, t, d, shape, area, own, mass);
 }
 
 bool ElementTransfer::can_batch(const Group& g) {
@@ -214,40 +214,41 @@ void ElementTransfer::fill_batch(PieceBatch& batch, std::span<const BoundaryPiec
 }
 
 std::span<const Segment> ElementTransfer::all_runs(const ElementPieces& own) {
-  if (!have_segments_) {
-    have_segments_ = true;
-    collect_segments(own, segments_);
-    run_end_.clear();
+  ElementState& e = element_;
+  if (!e.has_segments) {
+    e.has_segments = true;
+    collect_segments(own, e.segments);
     std::size_t end = 0;
     for (const std::int32_t d : own.donors) {
-      while (end < segments_.size() && segments_[end].donor == d) ++end;
-      run_end_.push_back(end);
+      while (end < e.segments.size() && e.segments[end].donor == d) ++end;
+      e.run_end.push_back(end);
     }
   }
-  return segments_;
+  return e.segments;
 }
 
 bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, std::size_t first,
                                     ElementOutcome& outcome) {
-  area_.clear();
-  bridged_.assign(own.donors.size(), 0);
+  Refilled<RegionState>& regions = element_.regions;
+  regions.resize(own.donors.size());
+  find_thin_regions(t, own);
   const auto note = [&](std::size_t k) {
     const std::int32_t d = own.donors[k];
-    if (thin_region_[k] != 0) {
-      const RunShape shape = thin_shape(t, d, run_of(own, k), false);
-      area_.push_back(shape.area);
-      bridged_[k] = 1;
+    if (regions[k].thin) {
+      const RegionShape& shape = thin_shape(t, d, run_of(own, k), false);
+      regions[k].area = shape.area;
+      regions[k].bridged = true;
       note_thin_region(t, d, shape, outcome);
       return;
     }
-    RunShape shape = run_shape(run_of(own, k));
-    if (!loose_ && !is_closed(t, d, shape.gap)) {
-      loose_ = true;
-      shape = run_shape(run_of(own, k));
+    const RegionShape* shape = &shape_of(run_of(own, k));
+    if (!element_.loose && !is_closed(t, d, shape->gap)) {
+      element_.loose = true;
+      shape = &shape_of(run_of(own, k));
     }
-    area_.push_back(shape.area);
-    bridged_[k] = bridges_.empty() ? 0 : 1;
-    note_region(t, d, shape.area, shape.gap, outcome);
+    regions[k].area = shape->area;
+    regions[k].bridged = !shape->bridges.empty();
+    note_region(t, d, shape->area, shape->gap, shape->bridges, outcome);
   };
   const bool batch = donor_.degree == target_.degree && target_.degree <= max_batch_degree;
   if (!batch) {
@@ -258,27 +259,27 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
   // The areas have the same bits whatever is summed besides.
   const bool summed = first < groups_.size();
   const int degree = summed ? 2 * groups_[first].target_space->uniform_degree() : 0;
-  const TargetPlace place =
-      summed ? target_place(groups_[first], t)
-      : target_.degree == 1
-          ? place_of(affine_frame(target_.corners(t)))
-          : TargetPlace{origin_, Vec2{{1, 0}}, Vec2{{0, 1}}, Vec2{{1, 0}}, Vec2{{0, 1}}, 1.0};
+  const TargetPlace place = summed ? target_place(groups_[first], t)
+                            : target_.degree == 1
+                                ? place_of(affine_frame(target_.corners(t)))
+                                : TargetPlace{element_.origin, Vec2{{1, 0}}, Vec2{{0, 1}},
+                                              Vec2{{1, 0}},    Vec2{{0, 1}}, 1.0};
   const ElementCount all{static_cast<std::uint32_t>(own.pieces.size()),
                          static_cast<std::uint32_t>(own.donors.size())};
-  region_sums(piece_table(target_.degree, degree), degree, {place, origin_}, own.pieces, {&all, 1},
-              batch_);
+  region_sums(piece_table(target_.degree, degree), degree, {place, element_.origin}, own.pieces,
+              {&all, 1}, batch_);
   const double area_unit = batch_.area_in_units ? place.area : 1.0;
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
   const double own_size = target_.element_diameter[static_cast<std::size_t>(t)];
   for (std::size_t k = 0; k < own.donors.size(); ++k) {
-    if (thin_region_[k] != 0) {
+    if (regions[k].thin) {
       note(k);
       continue;
     }
     const std::int32_t d = own.donors[k];
     const double* sums = batch_.region(k);
-    const double* open = sums + batch_.open;
-    const double gap = norm(open[0] * place.along_first + open[1] * place.along_second);
+    const double* step = sums + batch_.open;
+    const double gap = norm(step[0] * place.along_first + step[1] * place.along_second);
     const double area = sums[batch_.area] * area_unit;
     // About a place in the target element, areas are known to its rounding.
     bool small = false;
@@ -287,37 +288,39 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
       const double donor_size = donor_.element_diameter[static_cast<std::size_t>(d)];
       small = donor_area < small_area * own_area;
       // The usual case, as is_closed() and note_region() have it.
-      if (!small && !loose_ && area >= 0.0 && closes(gap, own_size, own_area) &&
+      if (!small && !element_.loose && area >= 0.0 && closes(gap, own_size, own_area) &&
           closes(gap, donor_size, donor_area)) {
-        area_.push_back(area);
+        regions[k].area = area;
         outcome.max_joint_gap =
             std::max(outcome.max_joint_gap, gap / std::min(own_size, donor_size));
         continue;
       }
     }
-    if (small || loose_ || !is_closed(t, d, gap)) {
-      loose_ = loose_ || !is_closed(t, d, gap);
+    const bool open = !is_closed(t, d, gap);
+    if (small || element_.loose || open) {
+      element_.loose = element_.loose || open;
       note(k);
       continue;
     }
-    bridges_.clear();
-    area_.push_back(area);
-    note_region(t, d, area, gap, outcome);
+    regions[k].area = area;
+    note_region(t, d, area, gap, {}, outcome);
   }
   return summed;
 }
 
 void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPieces& own,
-                                  bool summed, std::span<double> mass) {
+                                  bool summed) {
   const Group& g = groups_[i];
+  GroupState& state = element_.groups[i];
+  const std::span<double> mass = state.region_mass;
   const auto nc = static_cast<std::size_t>(g.components);
   const int degree = g.target_space->uniform_degree();
   const TargetPlace place = target_place(g, t);
   if (!summed) {
     const ElementCount all{static_cast<std::uint32_t>(own.pieces.size()),
                            static_cast<std::uint32_t>(own.donors.size())};
-    region_sums(piece_table(target_.degree, 2 * degree), 2 * degree, {place, origin_}, own.pieces,
-                {&all, 1}, batch_);
+    region_sums(piece_table(target_.degree, 2 * degree), 2 * degree, {place, element_.origin},
+                own.pieces, {&all, 1}, batch_);
   }
   const double* some = nullptr;
   const std::size_t count = own.donors.size();
@@ -331,34 +334,35 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
     if (d == exterior) continue;
     const double* const powers = g.powers.data() + static_cast<std::size_t>(d) * stride;
     if (some == nullptr) some = powers;
-    if (bridged_[k] != 0) continue;
+    if (element_.regions[k].bridged) continue;
     region.frame = &g.donor_frame[static_cast<std::size_t>(d)];
     region.donor = powers;
   }
   const std::span<BatchRegion> regions = std::span(regions_).first(count);
   // Constants come back whatever the rounding of the moments when they are not integrated at all.
-  double* base = base_[i].data();
+  double* base = state.base.data();
   for (std::size_t c = 0; c < nc; ++c) base[c] = some != nullptr ? some[c] : 0.0;
-  Accumulators& sums = moment_sums_[i];
+  Accumulators& sums = state.moments;
   add_batch(degree, place, batch_, regions, g.components, base, sums.product.data(),
             sums.basis.data(), mass.data());
   if (target_.degree > 1) {
-    std::vector<double>& whole = whole_[i];
+    Refilled<double>& whole = state.whole;
     whole.assign(static_cast<std::size_t>(bernstein::triangle_size(2 * degree)), 0.0);
     for (std::size_t k = 0; k < own.donors.size(); ++k)
       for (std::size_t n = 0; n < whole.size(); ++n) whole[n] += batch_.region(k)[n];
   }
   for (std::size_t k = 0; k < count; ++k) {
-    if (!regions[k].far && (bridged_[k] == 0 || own.donors[k] == exterior)) continue;
-    add_apart(i, t, own.donors[k], run_of(own, k), area_[k], thin_region_[k] != 0,
+    const RegionState& region = element_.regions[k];
+    if (!regions[k].far && (!region.bridged || own.donors[k] == exterior)) continue;
+    add_apart(i, t, own.donors[k], run_of(own, k), region.area, region.thin,
               mass.subspan(k * nc, nc));
   }
 }
 
 void ElementTransfer::moments_to_powers(std::size_t i, std::int32_t t) {
   const Group& g = groups_[i];
-  const Accumulators& moments = moment_sums_[i];
-  Accumulators& sums = sums_[i];
+  const Accumulators& moments = element_.groups[i].moments;
+  Accumulators& sums = element_.groups[i].sums;
   const int degree = g.target_space->degree(ElementId(t));
   powers_from_moments(degree, 1, moments.basis.data(), sums.basis.data());
   powers_from_moments(degree, g.components, moments.product.data(), sums.product.data());

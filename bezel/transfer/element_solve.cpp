@@ -167,15 +167,15 @@ bool ElementTransfer::finish_straight(std::size_t i, std::int32_t t, std::span<c
                                       double area, std::span<double> result,
                                       ElementOutcome& outcome) {
   const Group& g = groups_[i];
+  const GroupState& own = element_.groups[i];
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
-  if (target_.degree != 1 || have_moments_[i] == 0 ||
-      std::abs(area - own_area) > full_cover * own_area)
+  if (target_.degree != 1 || !own.has_moments || own.has_sums ||
+      std::abs(area - own_area) > full_cover * own_area || g.in_other_frame(t))
     return false;
-  if (extended_[i] != 0 || g.in_other_frame(t)) return false;
-  const Accumulators& sums = moment_sums_[i];
+  const Accumulators& sums = own.moments;
   const double defect =
       solve_straight({g.target_space->degree(ElementId(t)), g.components, own_area, area,
-                      sums.product.data(), sums.basis.data(), mass.data(), base_[i].data()},
+                      sums.product.data(), sums.basis.data(), mass.data(), own.base.data()},
                      result.data());
   outcome.max_mass_defect = std::max(outcome.max_mass_defect, defect);
   return true;

@@ -28,35 +28,33 @@ bool ElementTransfer::has_thin_donor(const ElementPieces& own) const {
 void ElementTransfer::find_thin_regions(std::int32_t t, const ElementPieces& own) {
   const bool any = has_thin_donor(own);
   const bool all = target_.rounding > 0.0 ? any : is_flat(target_, t);
-  thin_region_.assign(own.donors.size(), all ? 1 : 0);
-  if (all || !any) return;
   for (std::size_t k = 0; k < own.donors.size(); ++k)
-    thin_region_[k] = is_thin_donor(own.donors[k]) ? 1 : 0;
+    element_.regions[k].thin = all || (any && is_thin_donor(own.donors[k]));
 }
 
-ElementTransfer::RunShape ElementTransfer::thin_shape(std::int32_t t, std::int32_t d,
-                                                      std::span<const Segment> run,
-                                                      bool donors_plane) {
+const ElementTransfer::RegionShape& ElementTransfer::thin_shape(std::int32_t t, std::int32_t d,
+                                                                std::span<const Segment> run,
+                                                                bool donors_plane) {
+  static const RegionShape none;
+  RegionShape& shape = shape_;
+  shape = none;
+  shape.run = run;
   thin_.begin(t, d, run, donors_plane);
-  piece_control_.clear();
-  piece_degree_.clear();
-  bridges_.clear();
   for (const Segment& segment : run) {
     const bool source = segment.target.edge < 0;
     const OverlayMesh& mesh = source ? donor_ : target_;
-    thin_.append(mesh, source ? segment.source : segment.target, piece_control_);
-    piece_degree_.push_back(mesh.degree);
+    thin_.append(mesh, source ? segment.source : segment.target, shape.control);
+    shape.degree.push_back(mesh.degree);
   }
-  bridge_joints();
-  RunShape shape{};
-  for (const Bridge& bridge : bridges_)
+  bridge_joints(shape);
+  for (const Bridge& bridge : shape.bridges)
     shape.gap = std::max(shape.gap, norm(thin_.as_given(bridge.step)));
-  shape.area = 0.5 * twice_piece_area();
+  shape.area = 0.5 * twice_piece_area(shape);
   return shape;
 }
 
 // As note_region(), in the plane that the elements came from.
-void ElementTransfer::note_thin_region(std::int32_t t, std::int32_t d, const RunShape& shape,
+void ElementTransfer::note_thin_region(std::int32_t t, std::int32_t d, const RegionShape& shape,
                                        ElementOutcome& outcome) const {
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
   const double own_size = given_diameter(target_, t);
@@ -75,7 +73,7 @@ void ElementTransfer::note_thin_region(std::int32_t t, std::int32_t d, const Run
     outcome.inconsistent = true;
   const double widest = std::max(largest_joint_gap * width, 256.0 * distance);
   if (shape.gap <= widest) return;
-  for (const Bridge& bridge : bridges_) {
+  for (const Bridge& bridge : shape.bridges) {
     double across = thin_.joint_width(target_, t, bridge.step);
     if (d != exterior) across = std::min(across, thin_.joint_width(donor_, d, bridge.step));
     if (across > widest) outcome.inconsistent = true;
@@ -91,13 +89,13 @@ LinearPlace ElementTransfer::thin_linear_place(const Group& g, std::int32_t d) c
 
 void ElementTransfer::begin_thin_strip(std::int32_t t, std::int32_t d, const Segment& segment) {
   thin_.begin(t, d, {&segment, 1}, false);
-  piece_control_.clear();
-  thin_.append(target_, segment.target, piece_control_);
-  thin_.append(donor_, segment.source, piece_control_);
+  shape_.control.clear();
+  thin_.append(target_, segment.target, shape_.control);
+  thin_.append(donor_, segment.source, shape_.control);
 }
 
 double ElementTransfer::thin_strip_width(double s) const {
-  const std::span<const Vec2> control(piece_control_);
+  const std::span<const Vec2> control(shape_.control);
   const auto points = static_cast<std::size_t>(target_.degree + 1);
   const auto [x, slope] = edge_point(control.first(points), s);
   return cross(slope, foot_point(control.subspan(points), x).point - x);
@@ -105,7 +103,7 @@ double ElementTransfer::thin_strip_width(double s) const {
 
 std::array<double, 2> ElementTransfer::thin_strip_place(const Group& g, std::int32_t d, double s) {
   const auto points = static_cast<std::size_t>(target_.degree + 1);
-  const Vec2 x = edge_point(std::span<const Vec2>(piece_control_).first(points), s).value;
+  const Vec2 x = edge_point(std::span<const Vec2>(shape_.control).first(points), s).value;
   if (!g.donor_mapped) return thin_linear_place(g, d)(x);
   thin_.bring(donor_, d, thin_donor_map_);
   std::array<double, 3> lambda{};
@@ -117,8 +115,8 @@ std::array<double, 2> ElementTransfer::thin_strip_place(const Group& g, std::int
 // Gauss nodes on the pieces and bridges in the region's plane.
 void ElementTransfer::thin_nodes(int degree) {
   nodes_.clear();
-  const Vec2* p = piece_control_.data();
-  for (const int own : piece_degree_) {
+  const Vec2* p = shape_.control.data();
+  for (const int own : shape_.degree) {
     const std::span<const Vec2> control(p, static_cast<std::size_t>(own) + 1);
     const IntervalRule& line = rule((degree * own + 2 * own - 2) / 2 + 1);
     for (std::size_t i = 0; i < line.node.size(); ++i) {
@@ -149,10 +147,10 @@ void ElementTransfer::thin_fan(int degree, const Visit& visit) {
 void ElementTransfer::thin_reference_nodes(std::int32_t d, std::span<const Segment> run, int degree,
                                            int points) {
   nodes_.clear();
-  const Vec2* p = piece_control_.data();
+  const Vec2* p = shape_.control.data();
   std::array<double, 3> lambda{};
-  for (std::size_t i = 0; i < piece_degree_.size(); ++i) {
-    const std::span<const Vec2> control(p, static_cast<std::size_t>(piece_degree_[i]) + 1);
+  for (std::size_t i = 0; i < shape_.degree.size(); ++i) {
+    const std::span<const Vec2> control(p, static_cast<std::size_t>(shape_.degree[i]) + 1);
     p += control.size();
     if (i < run.size() && run[i].target.edge < 0) {
       own_side_nodes(donor_, d, run[i].source, degree);
@@ -194,11 +192,13 @@ void ElementTransfer::thin_reference_fan(const std::array<double, 2>& centre, in
 
 // As add_pair().
 void ElementTransfer::add_thin_pair(const Group& g, std::int32_t t, std::int32_t d,
-                                    std::span<const Segment> run, double area, Accumulators& sums,
+                                    std::span<const Segment> run, double area, GroupState& own,
                                     std::span<double> mass) {
   const int pt = g.target_space->degree(ElementId(t));
   const int pd = g.donor_space->degree(ElementId(d));
   const auto nc = static_cast<std::size_t>(g.components);
+  const std::span<const double> constants = std::span(own.base).first(nc);
+  Accumulators& sums = own.sums;
   thin_shape(t, d, run, g.donor_mapped);
   const bool target_framed = !g.target_mapped && target_.degree > 1;
   const LinearPlace in_target =
@@ -221,8 +221,8 @@ void ElementTransfer::add_thin_pair(const Group& g, std::int32_t t, std::int32_t
                const auto to = target_at(x), from = in_donor(x);
                push(w, to[0], to[1], from[0], from[1]);
              });
-    flush(g, d, pt, sums);
-    for (std::size_t c = 0; c < nc; ++c) mass[c] = sums.mass[c] + taken_[c] * area;
+    flush(g, d, pt, constants, sums);
+    for (std::size_t c = 0; c < nc; ++c) mass[c] = sums.mass[c] + constants[c] * area;
     return;
   }
 
@@ -240,7 +240,7 @@ void ElementTransfer::add_thin_pair(const Group& g, std::int32_t t, std::int32_t
       const auto to = in_target(x);
       push(w, to[0], to[1], 0.0, 0.0);
     });
-    flush(g, d, pt, exact);
+    flush(g, d, pt, constants, exact);
   }
   const int degree = pd + 2 * (donor_.degree - 1);
   const int with_target = degree + pt * donor_.degree;
@@ -274,13 +274,13 @@ void ElementTransfer::add_thin_pair(const Group& g, std::int32_t t, std::int32_t
       count_ = second;
     }
   }
-  flush(g, d, pt, mapped);
+  flush(g, d, pt, constants, mapped);
   for (std::size_t n = 0; n < functions; ++n) {
     const double difference = g.target_mapped ? 0.0 : exact.basis[n] - mapped.basis[n];
     sums.basis[n] += mapped.basis[n] + difference;
     for (std::size_t c = 0; c < nc; ++c)
       sums.product[n * nc + c] +=
-          mapped.product[n * nc + c] + (donor_mass[c] / donor_area - taken_[c]) * difference;
+          mapped.product[n * nc + c] + (donor_mass[c] / donor_area - constants[c]) * difference;
   }
   // The rule's errors cancel against those of neighbours, whichever way these go.
   const bool fitted = fitted_[static_cast<std::size_t>(&g - groups_.data())] != 0;
@@ -294,9 +294,9 @@ void ElementTransfer::add_thin_pair(const Group& g, std::int32_t t, std::int32_t
                        weight += w;
                        push(w, third, third, q[0], q[1]);
                      });
-  flush(g, d, 0, total);
+  flush(g, d, 0, constants, total);
   for (std::size_t c = 0; c < nc; ++c)
-    mass[c] = total.mass[c] + taken_[c] * weight + donor_mass[c] / donor_area * (area - weight);
+    mass[c] = total.mass[c] + constants[c] * weight + donor_mass[c] / donor_area * (area - weight);
 }
 
 }  // namespace bezel::detail

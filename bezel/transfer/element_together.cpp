@@ -39,6 +39,7 @@ bool ElementTransfer::may_be_ordinary(std::int32_t t, const ElementPieces& own,
 
 std::size_t ElementTransfer::begin_together(std::span<const std::int32_t> elements,
                                             const OverlayList& overlays, std::size_t first) {
+  together_ = {};
   if (!some_together_) return 0;
   ElementBatch& batch = ordinary_;
   std::size_t pieces = 0, regions = 0, count = 0;
@@ -56,9 +57,10 @@ std::size_t ElementTransfer::begin_together(std::span<const std::int32_t> elemen
     pieces += own.pieces.size();
     ++count;
   }
+  const std::size_t looked_at = std::min(count + 1, most);  // the last may not be ordinary
   batch.elements = count;
   batch.first_region[count] = regions;
-  if (count == 0) return 0;
+  if (count == 0) return looked_at;
   const std::span<const std::int32_t> here = elements.subspan(first, count);
   // The lists of elements that follow each other do, too.
   const std::span<const BoundaryPiece> all_pieces{overlays[first].pieces.data(), pieces};
@@ -85,43 +87,44 @@ std::size_t ElementTransfer::begin_together(std::span<const std::int32_t> elemen
   for (std::size_t i = 0; i < groups_.size(); ++i) sum_together(i, here, all_pieces, donors);
   for (std::size_t k = 0; k < count; ++k) {
     bool ordinary = true;
-    for (const ElementSums& sums : together_sums_) {
+    for (const GroupBatch& group : group_batches_) {
+      const ElementSums& sums = group.sums;
       const double own_area = batch.area[k], covered = sums.row(k)[sums.area];
       ordinary = ordinary && std::abs(covered - own_area) <= largest_joint_gap * own_area;
       if (sums.all_ordinary) continue;
       for (std::size_t r = batch.first_region[k]; r < batch.first_region[k + 1]; ++r)
         ordinary = ordinary && sums.ordinary[r] != 0.0;
     }
-    together_[k] = ordinary;
+    together_.ready[k] = ordinary;
   }
-  all_together_ =
-      std::all_of(together_.begin(), together_.begin() + static_cast<std::ptrdiff_t>(count),
-                  [](bool ordinary) { return ordinary; });
+  together_.all_ready = std::all_of(together_.ready.begin(),
+                                    together_.ready.begin() + static_cast<std::ptrdiff_t>(count),
+                                    [](bool ready) { return ready; });
   const Group& g = groups_[0];
-  solved_together_ = groups_.size() == 1 && g.components == 1 && target_.degree == 1;
-  together_seconds_ = 0.0;
-  if (!solved_together_) return count;
+  together_.solved = groups_.size() == 1 && g.components == 1 && target_.degree == 1;
+  if (!together_.solved) return looked_at;
   std::array<double*, lanes> out{};
   std::array<double, static_cast<std::size_t>(bernstein::triangle_size(max_moment_degree))> nowhere;
   for (std::size_t k = 0; k < count; ++k)
-    out[k] = together_[k] ? groups_[0].target_out(here[k]).data() : nowhere.data();
+    out[k] = together_.ready[k] ? groups_[0].target_out(here[k]).data() : nowhere.data();
   const bool timed = batches_++ % timed_batches == 0;
   const auto start =
       timed ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
-  together_defect_ = solve_elements(g.target_space->uniform_degree(), batch, together_sums_[0],
-                                    together_base_[0].data(), out);
+  together_.defect = solve_elements(g.target_space->uniform_degree(), batch, group_batches_[0].sums,
+                                    group_batches_[0].base.data(), out);
   if (timed) {
-    together_seconds_ =
+    together_.seconds =
         static_cast<double>(timed_batches) *
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
-  return count;
+  return looked_at;
 }
 
 void ElementTransfer::sum_together(std::size_t i, std::span<const std::int32_t> elements,
                                    std::span<const BoundaryPiece> pieces,
                                    std::span<const std::int32_t> donors) {
   const Group& g = groups_[i];
+  GroupBatch& group = group_batches_[i];
   ElementBatch& batch = ordinary_;
   const auto nc = static_cast<std::size_t>(g.components);
   const int degree = g.target_space->uniform_degree();
@@ -134,7 +137,7 @@ void ElementTransfer::sum_together(std::size_t i, std::span<const std::int32_t> 
               batch.counts(), batch.pieces);
   if (target_.degree > 1) {
     const auto size = static_cast<std::size_t>(bernstein::triangle_size(2 * degree));
-    std::vector<double>& whole = together_whole_[i];
+    std::vector<double>& whole = group.whole;
     whole.assign(elements.size() * size, 0.0);
     for (std::size_t r = 0; r < donors.size(); ++r) {
       const double* const from = batch.pieces.region(r);
@@ -149,12 +152,12 @@ void ElementTransfer::sum_together(std::size_t i, std::span<const std::int32_t> 
     batch.donor[r] = g.powers.data() + d * stride;
   }
   // Constants come back whatever the rounding of the moments when they are not integrated at all.
-  std::vector<double>& base = together_base_[i];
+  std::vector<double>& base = group.base;
   base.resize(lanes * nc + batch_padding);
   for (std::size_t k = 0; k < elements.size(); ++k)
     std::copy_n(batch.donor[batch.first_region[k]], nc,
                 base.begin() + static_cast<std::ptrdiff_t>(k * nc));
-  add_elements(degree, batch, g.components, base.data(), together_sums_[i]);
+  add_elements(degree, batch, g.components, base.data(), group.sums);
 }
 
 ElementOutcome ElementTransfer::take(std::size_t k, std::int32_t t, const ElementPieces& own,
@@ -162,53 +165,46 @@ ElementOutcome ElementTransfer::take(std::size_t k, std::int32_t t, const Elemen
   ElementOutcome outcome;
   const std::size_t first = ordinary_.first_region[k], regions = own.donors.size();
   // All at once when all are ordinary.
-  const std::size_t listed = all_together_ ? (k == 0 ? ordinary_.regions() : 0) : regions;
+  const std::size_t listed = together_.all_ready ? (k == 0 ? ordinary_.regions() : 0) : regions;
   const std::int32_t* const donors = own.donors.data();
-  const double* const areas = together_sums_[0].region_area.data() + first;
+  const ElementSums& some = group_batches_[0].sums;
+  const double* const areas = some.region_area.data() + first;
   given.donor.insert(given.donor.end(), donors, donors + listed);
   given.area.insert(given.area.end(), areas, areas + listed);
   given.target.insert(given.target.end(), regions, t);
   const double own_area = ordinary_.area[k];
   outcome.pairs = static_cast<std::int32_t>(regions);
-  outcome.covered_area = together_sums_[0].row(k)[together_sums_[0].area];
+  outcome.covered_area = some.row(k)[some.area];
   outcome.partition_residual = std::abs(outcome.covered_area - own_area) / own_area;
-  outcome.max_joint_gap = together_sums_[0].max_joint_gap;
-  if (solved_together_) {
-    outcome.max_mass_defect = together_defect_[k];
-    outcome.solve_seconds = std::exchange(together_seconds_, 0.0);
+  outcome.max_joint_gap = some.max_joint_gap;
+  if (together_.solved) {
+    outcome.max_mass_defect = together_.defect[k];
+    outcome.solve_seconds = std::exchange(together_.seconds, 0.0);
     return outcome;
   }
-  masses_.clear();
-  loose_ = false;  // what process() left is another element's
+  begin_element(t, false);
+  double* masses = element_.masses.data();
   for (std::size_t i = 0; i < groups_.size(); ++i) {
-    const Group& g = groups_[i];
-    const ElementSums& sums = together_sums_[i];
-    const auto nc = static_cast<std::size_t>(g.components);
-    const auto functions =
-        static_cast<std::size_t>(bernstein::triangle_size(g.target_space->uniform_degree()));
+    const GroupBatch& group = group_batches_[i];
+    const ElementSums& sums = group.sums;
+    GroupState& state = element_.groups[i];
+    const auto nc = static_cast<std::size_t>(groups_[i].components);
     const double* const row = sums.row(k);
-    Accumulators& moments = moment_sums_[i];
     const double* const product = nc == 1 ? row : sums.product.data() + k * sums.product_stride;
     const double* const mass =
         nc == 1 ? row + sums.mass : sums.masses.data() + k * sums.mass_stride;
-    moments.product.assign(product, product + functions * nc);
-    moments.product.resize(functions * nc + batch_padding);
-    moments.basis.assign(row + sums.basis, row + sums.basis + functions);
-    masses_.insert(masses_.end(), mass, mass + nc);
-    const double* const base = together_base_[i].data() + k * nc;
-    base_[i].assign(base, base + nc);
-    base_[i].resize(nc + batch_padding);
-    functions_[i] = functions;
-    have_moments_[i] = 1;
-    extended_[i] = 0;
-    sums_[i].reset(functions, nc);
+    state.has_moments = true;
+    state.moments.product.assign(product, product + state.functions * nc);
+    state.moments.product.resize(state.functions * nc + batch_padding);
+    state.moments.basis.assign(row + sums.basis, row + sums.basis + state.functions);
+    masses = std::copy_n(mass, nc, masses);
+    std::copy_n(group.base.data() + k * nc, nc, state.base.data());
     if (target_.degree > 1) {
-      const std::size_t size = together_whole_[i].size() / ordinary_.elements;
-      const double* const whole = together_whole_[i].data() + k * size;
-      whole_[i].assign(whole, whole + size);
+      const std::size_t size = group.whole.size() / ordinary_.elements;
+      const double* const whole = group.whole.data() + k * size;
+      state.whole.assign(whole, whole + size);
     }
   }
-  masses_.resize(masses_.size() + batch_padding);
   finish_groups(t, outcome.covered_area, true, nullptr, outcome);
   return outcome;
 }

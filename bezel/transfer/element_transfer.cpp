@@ -28,17 +28,13 @@ ElementTransfer::ElementTransfer(const OverlayMesh& donor, const OverlayMesh& ta
       search_(search),
       groups_(groups),
       policy_(policy),
-      thin_(donor, target),
-      sums_(groups.size()),
-      moment_sums_(groups.size()),
-      whole_(groups.size()),
-      base_(groups.size()),
-      functions_(groups.size()),
-      have_moments_(groups.size()),
-      extended_(groups.size()),
       batched_(groups.size()),
+      fitted_(groups.size()),
+      element_(groups.size()),
+      no_element_(groups.size()),
+      group_batches_(groups.size()),
       fit_(donor, target, groups.size()),
-      fitted_(groups.size()) {
+      thin_(donor, target) {
   for (std::size_t i = 0; i < groups.size(); ++i) {
     batched_[i] = can_batch(groups[i]) ? 1 : 0;
     fitted_[i] = batched_[i] == 0 && PairFit::can(groups[i], donor, target) ? 1 : 0;
@@ -47,9 +43,6 @@ ElementTransfer::ElementTransfer(const OverlayMesh& donor, const OverlayMesh& ta
   const bool all_batched = std::find(batched_.begin(), batched_.end(), 0) == batched_.end();
   some_together_ = all_batched && !groups.empty() && donor.degree == target.degree &&
                    target.degree <= max_batch_degree;
-  together_sums_.resize(groups.size());
-  together_base_.resize(groups.size());
-  together_whole_.resize(groups.size());
 }
 
 void ElementTransfer::Accumulators::reset(std::size_t functions, std::size_t components,
@@ -80,13 +73,14 @@ void ElementTransfer::drop_points(std::size_t first, std::size_t last) {
   count_ -= last - first;
 }
 
-void ElementTransfer::flush(const Group& g, std::int32_t d, int target_degree, Accumulators& sums) {
+void ElementTransfer::flush(const Group& g, std::int32_t d, int target_degree,
+                            std::span<const double> constants, Accumulators& sums) {
   reserve_points(0);
   while (count_ % lanes != 0) push(0.0, 0.0, 0.0, 0.0, 0.0);
   const PointBlock points{w_.data(),  tu_.data(), tv_.data(),
                           du_.data(), dv_.data(), count_ / lanes};
   const int degree = g.donor_space->degree(ElementId(d));
-  take_off(degree, g.donor_scaled(d), taken_);
+  take_off(degree, g.donor_scaled(d), constants);
   accumulate(target_degree, degree, g.components, shifted_.data(), points, sums.product.data(),
              sums.basis.data(), sums.mass.data());
   count_ = 0;
@@ -103,9 +97,9 @@ void ElementTransfer::take_off(int degree, std::span<const double> scaled,
 
 // Gauss nodes on the run's pieces in the plane; exact for integrands of total degree `degree` in x
 // and y times the curve's own Jacobian.
-void ElementTransfer::boundary_nodes(std::span<const Segment> run, int degree) {
+void ElementTransfer::boundary_nodes(const RegionShape& shape, int degree) {
   nodes_.clear();
-  for (const Segment& segment : run) {
+  for (const Segment& segment : shape.run) {
     const bool source = segment.target.edge < 0;
     const Part& part = source ? segment.source : segment.target;
     const OverlayMesh& mesh = source ? donor_ : target_;
@@ -120,9 +114,9 @@ void ElementTransfer::boundary_nodes(std::span<const Segment> run, int degree) {
       nodes_.push_back(node);
     }
   }
-  for (const Bridge& bridge : bridges_) {
+  for (const Bridge& bridge : shape.bridges) {
     Node node;
-    node.x = origin_ + bridge.from + 0.5 * bridge.step;
+    node.x = element_.origin + bridge.from + 0.5 * bridge.step;
     node.dx = bridge.step;
     nodes_.push_back(node);
   }
@@ -131,9 +125,9 @@ void ElementTransfer::boundary_nodes(std::span<const Segment> run, int degree) {
 // The same nodes in the reference coordinates of one element of `mesh`: its own sides are straight
 // there; along other curves the map is inverted point by point.
 void ElementTransfer::reference_nodes(const OverlayMesh& mesh, std::int32_t element,
-                                      std::span<const Segment> run, bool source, int degree) {
+                                      const RegionShape& shape, bool source, int degree) {
   nodes_.clear();
-  for (const Segment& segment : run) {
+  for (const Segment& segment : shape.run) {
     const Part& own = source ? segment.source : segment.target;
     if (own.edge >= 0) {
       own_side_nodes(mesh, element, own, degree);
@@ -159,9 +153,9 @@ void ElementTransfer::reference_nodes(const OverlayMesh& mesh, std::int32_t elem
       nodes_.push_back(node);
     }
   }
-  for (const Bridge& bridge : bridges_) {
+  for (const Bridge& bridge : shape.bridges) {
     Node node;
-    node.x = origin_ + bridge.from + 0.5 * bridge.step;
+    node.x = element_.origin + bridge.from + 0.5 * bridge.step;
     node.dx = bridge.step;
     std::array<double, 3> lambda{};
     if (!invert_map(mesh.degree, mesh.element(element), node.x, lambda, false)) continue;
@@ -245,17 +239,20 @@ bool ElementTransfer::donor_places(const Group& g, std::int32_t d, std::size_t f
 }
 
 void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
-                               std::span<const Segment> run, double area, const Vec2& centre,
-                               Accumulators& sums, std::span<double> mass) {
+                               const RegionShape& shape, double area, GroupState& own,
+                               std::span<double> mass) {
   const int pt = g.target_space->degree(ElementId(t));
   const int pd = g.donor_space->degree(ElementId(d));
   const auto nc = static_cast<std::size_t>(g.components);
   const double* donor_mass = g.donor_mass.data() + static_cast<std::size_t>(d) * nc;
   const double donor_area = donor_.element_area[static_cast<std::size_t>(d)];
+  const std::span<const double> taken = std::span(own.base).first(nc);
+  const Vec2& centre = shape.centre;
+  Accumulators& sums = own.sums;
 
   // Sums of w f over a physical fan of the given target degree (-1: only the mass).
   const auto physical_fan = [&](int degree, int target_degree, Accumulators& into) {
-    boundary_nodes(run, degree);
+    boundary_nodes(shape, degree);
     const IntervalRule& radial = rule((degree + 3) / 2);
     reserve_points(nodes_.size() * radial.node.size());
     const auto donor_at = [&](const Vec2& x) {
@@ -279,20 +276,20 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
              dc[1] + tau * (dq[1] - dc[1]));
       }
     }
-    flush(g, d, target_degree, into);
+    flush(g, d, target_degree, taken, into);
   };
 
   if (!g.target_mapped && !g.donor_mapped) {
     std::fill(sums.mass.begin(), sums.mass.end(), 0.0);
     physical_fan(pt + pd, pt, sums);
-    for (std::size_t c = 0; c < nc; ++c) mass[c] = sums.mass[c] + taken_[c] * area;
+    for (std::size_t c = 0; c < nc; ++c) mass[c] = sums.mass[c] + taken[c] * area;
     return;
   }
 
   if (g.target_mapped) {
     const int degree =
         pt + 2 * (target_.degree - 1) + (g.donor_mapped ? pd + inexact_extra : pd * target_.degree);
-    reference_nodes(target_, t, run, false, degree);
+    reference_nodes(target_, t, shape, false, degree);
     const std::size_t first = count_;
     plane_.clear();
     reference_fan(target_, t, reference_centre(), degree,
@@ -307,7 +304,7 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
     if (!found_all || std::pow(largest, pd) > steepest_value) {  // a thin donor, as below
       count_ = first;
       const int own_degree = pt + inexact_extra + (2 + pd) * donor_.degree - 2;
-      reference_nodes(donor_, d, run, true, own_degree);
+      reference_nodes(donor_, d, shape, true, own_degree);
       std::array<double, 3> lambda{}, warm{};
       bool found = false, have_warm = false;
       reference_fan(donor_, d, reference_centre(), own_degree,
@@ -317,7 +314,7 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
                       push(w, lambda[1], lambda[2], place[0], place[1]);
                     });
     }
-    flush(g, d, pt, sums);
+    flush(g, d, pt, taken, sums);
   } else {
     // The donor's mean is carried exactly by the physical fan, only the rest by the rule in
     // reference coordinates.
@@ -326,7 +323,7 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
     exact.reset(functions, nc);
     physical_fan(pt, pt, exact);
     const int degree = pd + 2 * (donor_.degree - 1) + pt * donor_.degree;
-    reference_nodes(donor_, d, run, true, degree);
+    reference_nodes(donor_, d, shape, true, degree);
     Accumulators mapped;
     mapped.reset(functions, nc);
     const std::size_t first = count_;
@@ -342,7 +339,7 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
     if (std::pow(largest, pt) > steepest_value) {
       count_ = first;
       const int own_degree = pd + inexact_extra + 2 * (target_.degree - 1) + pt * target_.degree;
-      reference_nodes(target_, t, run, false, own_degree);
+      reference_nodes(target_, t, shape, false, own_degree);
       plane_.clear();
       reference_fan(target_, t, reference_centre(), own_degree,
                     [&](double w, const std::array<double, 2>&, const Vec2& x) {
@@ -352,13 +349,13 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
                     });
       donor_places(g, d, first);
     }
-    flush(g, d, pt, mapped);
+    flush(g, d, pt, taken, mapped);
     for (std::size_t n = 0; n < functions; ++n) {
       const double difference = exact.basis[n] - mapped.basis[n];
       sums.basis[n] += exact.basis[n];
       for (std::size_t c = 0; c < nc; ++c) {
         sums.product[n * nc + c] +=
-            mapped.product[n * nc + c] + (donor_mass[c] / donor_area - taken_[c]) * difference;
+            mapped.product[n * nc + c] + (donor_mass[c] / donor_area - taken[c]) * difference;
       }
     }
   }
@@ -368,11 +365,11 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
   total.reset(1, nc);
   if (!g.donor_mapped) {
     physical_fan(pd, 0, total);
-    for (std::size_t c = 0; c < nc; ++c) mass[c] = total.mass[c] + taken_[c] * area;
+    for (std::size_t c = 0; c < nc; ++c) mass[c] = total.mass[c] + taken[c] * area;
     return;
   }
   const int degree = pd + 2 * (donor_.degree - 1);
-  reference_nodes(donor_, d, run, true, degree + inexact_extra);
+  reference_nodes(donor_, d, shape, true, degree + inexact_extra);
   const double third = 1.0 / 3.0;
   double weight = 0.0;
   reference_fan(donor_, d, {third, third}, degree,
@@ -380,15 +377,15 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
                   weight += w;
                   push(w, third, third, q[0], q[1]);
                 });
-  flush(g, d, 0, total);
+  flush(g, d, 0, taken, total);
   for (std::size_t c = 0; c < nc; ++c)
-    mass[c] = total.mass[c] + taken_[c] * weight + donor_mass[c] / donor_area * (area - weight);
+    mass[c] = total.mass[c] + taken[c] * weight + donor_mass[c] / donor_area * (area - weight);
 }
 
-std::span<const std::array<Vec2, 2>> ElementTransfer::plane_bridges() {
+std::span<const std::array<Vec2, 2>> ElementTransfer::plane_bridges(const RegionShape& shape) {
   plane_bridges_.clear();
-  for (const Bridge& bridge : bridges_)
-    plane_bridges_.push_back({origin_ + bridge.from, bridge.step});
+  for (const Bridge& bridge : shape.bridges)
+    plane_bridges_.push_back({element_.origin + bridge.from, bridge.step});
   return plane_bridges_;
 }
 
@@ -397,16 +394,41 @@ void ElementTransfer::choose_base(std::size_t i, const ElementPieces& own) {
   const Group& g = groups_[i];
   const auto some = std::find_if(own.donors.begin(), own.donors.end(),
                                  [](std::int32_t d) { return d != exterior; });
-  const std::int32_t d = some != own.donors.end() ? *some : search_.nearest(origin_);
+  const std::int32_t d = some != own.donors.end() ? *some : search_.nearest(element_.origin);
   for (std::size_t c = 0; c < static_cast<std::size_t>(g.components); ++c)
-    base_[i][c] = g.constant_of(donor_, d, c);
+    element_.groups[i].base[c] = g.constant_of(donor_, d, c);
 }
 
 void ElementTransfer::begin_moments(std::size_t i) {
-  if (have_moments_[i] != 0) return;
-  have_moments_[i] = 1;
-  moment_sums_[i].reset(functions_[i], static_cast<std::size_t>(groups_[i].components),
-                        batch_padding);
+  GroupState& own = element_.groups[i];
+  if (own.has_moments) return;
+  own.has_moments = true;
+  own.moments.reset(own.functions, static_cast<std::size_t>(groups_[i].components), batch_padding);
+}
+
+void ElementTransfer::begin_sums(std::size_t i) {
+  GroupState& own = element_.groups[i];
+  if (own.has_sums) return;
+  own.has_sums = true;
+  own.sums.reset(own.functions, static_cast<std::size_t>(groups_[i].components));
+}
+
+void ElementTransfer::begin_element(std::int32_t t, bool loose) {
+  element_ = no_element_;
+  const auto corners = target_.corners(t);
+  element_.origin = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
+  element_.loose = loose;
+  std::size_t components = 0;
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    const Group& g = groups_[i];
+    GroupState& own = element_.groups[i];
+    const auto nc = static_cast<std::size_t>(g.components);
+    own.functions =
+        static_cast<std::size_t>(bernstein::triangle_size(g.target_space->degree(ElementId(t))));
+    own.base.resize(nc + batch_padding);
+    components += nc;
+  }
+  element_.masses.resize(components + batch_padding);
 }
 
 ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own, GivenList& given,
@@ -414,18 +436,8 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
   ElementOutcome outcome;
   if (blocks != nullptr) blocks->reset(static_cast<std::size_t>(groups_[0].components));
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
-  std::size_t components = 0;
-  for (std::size_t i = 0; i < groups_.size(); ++i) {
-    const Group& g = groups_[i];
-    functions_[i] =
-        static_cast<std::size_t>(bernstein::triangle_size(g.target_space->degree(ElementId(t))));
-    components += static_cast<std::size_t>(g.components);
-    have_moments_[i] = 0;
-    extended_[i] = 0;
-  }
-  const auto corners = target_.corners(t);
-  origin_ = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
-  masses_.assign(components + batch_padding, 0.0);
+  begin_element(t, own.loose());
+  const std::size_t components = element_.masses.size() - batch_padding;
 
   // The regions: shape and area do not depend on the fields.
   const bool batch =
@@ -434,21 +446,13 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
       batch ? static_cast<std::size_t>(std::find(batched_.begin(), batched_.end(), 1) -
                                        batched_.begin())
             : groups_.size();
-  have_segments_ = false;
-  loose_ = own.loose();
-  find_thin_regions(t, own);
   const bool summed = shape_regions(t, own, first_batched, outcome);
-  for (std::size_t i = 0; i < groups_.size(); ++i)
-    sums_[i].reset(functions_[i], static_cast<std::size_t>(groups_[i].components));
   double total = 0.0;
   double extended = 0.0;
-  const std::size_t regions = own.donors.size();
-  mass_row_.resize(regions);
-  for (std::size_t k = 0; k < regions; ++k) {
+  for (std::size_t k = 0; k < own.donors.size(); ++k) {
     const std::int32_t d = own.donors[k];
-    const double area = area_[k];
+    const double area = element_.regions[k].area;
     total += area;
-    mass_row_[k] = -1;
     if (d == exterior) {
       outcome.uncovered_area = std::max(area, 0.0);
       continue;
@@ -458,83 +462,80 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
     given.target.push_back(t);
     given.donor.push_back(d);
     given.area.push_back(area);
-    mass_row_[k] = add_mass_row(given);
+    element_.regions[k].mass_row = add_mass_row(given);
   }
   given.mass.resize(given.massed.size() * components);
 
   std::size_t c0 = 0;
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     const Group& g = groups_[i];
+    GroupState& state = element_.groups[i];
     const auto nc = static_cast<std::size_t>(g.components);
-    region_mass_.assign(own.donors.size() * nc, 0.0);
-    base_[i].assign(nc + batch_padding, 0.0);
+    state.region_mass.resize(own.donors.size() * nc);
     const bool batched = batch && batched_[i] != 0;
     if (batched) {
       begin_moments(i);
-      add_batched(i, t, own, summed && i == first_batched, region_mass_);
+      add_batched(i, t, own, summed && i == first_batched);
+    } else {
+      begin_sums(i);
     }
     const bool fitted = fitted_[i] != 0 && !own.donors.empty();
     // Open joints are bridged by the other rules; masses of mapped donors are all by one rule, for
     // its errors cancel between neighbours.
-    const bool fits = fitted && !loose_;
+    const bool fits = fitted && !element_.loose;
     if (fitted) {
       fit_.begin(i, g, t, all_runs(own), blocks == nullptr);
-      std::copy(fit_.constants().begin(), fit_.constants().end(), base_[i].begin());
+      std::copy(fit_.constants().begin(), fit_.constants().end(), state.base.begin());
     }
     if (blocks == nullptr && (outcome.pairs == 0 || (!fitted && !batched))) choose_base(i, own);
-    taken_ = std::span(base_[i]).first(nc);
     for (std::size_t k = 0; k < own.donors.size(); ++k) {
       const std::int32_t d = own.donors[k];
-      const double area = area_[k];
-      const std::span<double> here(region_mass_.data() + k * nc, nc);
+      const double area = element_.regions[k].area;
+      const std::span<double> here(state.region_mass.data() + k * nc, nc);
       if (d == exterior) {
         const bool silent = std::abs(area) <= silent_gap(target_, t) * own_area;
         if (!(silent || policy_ == Uncovered::extend)) continue;
         if (i == 0) extended += area;
-        extended_[i] = 1;
-        const auto run = run_of(own, k);
+        begin_sums(i);
+        const RegionShape& shape = shape_of(run_of(own, k));
         if (blocks != nullptr) {
-          extension_blocks(g, t, run, area, run_shape(run).centre, sums_[i], *blocks,
-                           outcome.extension);
+          extension_blocks(g, t, shape, area, state.sums, *blocks, outcome.extension);
           continue;
         }
-        add_extension(g, t, run, area, run_shape(run).centre, sums_[i], here, outcome.extension);
+        add_extension(g, t, shape, area, state, here, outcome.extension);
         for (std::size_t c = 0; c < nc; ++c) made[c0 + c] += here[c];
-      } else if (thin_region_[k] != 0) {
-        if (!batched) add_thin_pair(g, t, d, run_of(own, k), area, sums_[i], here);
+      } else if (element_.regions[k].thin) {
+        if (!batched) add_thin_pair(g, t, d, run_of(own, k), area, state, here);
       } else if (!batched) {
-        if (fits && fit_.add(d, run_begin(k), run_end_[k], area, here)) {
-          if (blocks != nullptr) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
+        if (fits && fit_.add(d, run_begin(k), element_.run_end[k], area, here)) {
+          if (blocks != nullptr) fit_.take(state.sums.product.data(), state.sums.basis.data());
         } else if (blocks == nullptr && by_moments(g, t, d)) {
           begin_moments(i);
           add_apart(i, t, d, run_of(own, k), area, false, here);
         } else {
-          const auto run = run_of(own, k);
-          const RunShape shape = run_shape(run);
+          const RegionShape& shape = shape_of(run_of(own, k));
           if (fitted && g.donor_mapped) {
             fitted_mass_.assign(nc, 0.0);
-            add_pair(g, t, d, run, area, shape.centre, sums_[i], fitted_mass_);
-            if (loose_) fit_.mass_of(d, run_begin(k), run_end_[k], area, plane_bridges(), here);
+            add_pair(g, t, d, shape, area, state, fitted_mass_);
+            if (element_.loose) {
+              fit_.mass_of(d, run_begin(k), element_.run_end[k], area, plane_bridges(shape), here);
+            }
           } else {
-            add_pair(g, t, d, run, area, shape.centre, sums_[i], here);
+            add_pair(g, t, d, shape, area, state, here);
           }
         }
       }
-      for (std::size_t c = 0; c < nc; ++c) masses_[c0 + c] += here[c];
+      for (std::size_t c = 0; c < nc; ++c) element_.masses[c0 + c] += here[c];
       if (d == exterior) continue;
-      if (mass_row_[k] >= 0)
-        std::copy(
-            here.begin(), here.end(),
-            given.mass.begin() + static_cast<std::ptrdiff_t>(
-                                     static_cast<std::size_t>(mass_row_[k]) * components + c0));
-      if (blocks != nullptr) keep_pair(d, sums_[i], here, *blocks);
+      if (const std::int32_t row = element_.regions[k].mass_row; row >= 0)
+        std::copy(here.begin(), here.end(),
+                  given.mass.data() + static_cast<std::size_t>(row) * components + c0);
+      if (blocks != nullptr) keep_pair(d, state.sums, here, *blocks);
     }
-    if (fits) fit_.take(sums_[i].product.data(), sums_[i].basis.data());
-    // Donors of several degrees: what is not summed by moments is in the other sums.
-    if (!batched) extended_[i] = 1;
+    if (fits) fit_.take(state.sums.product.data(), state.sums.basis.data());
     c0 += nc;
   }
-  if (loose_ && components > 0) give_strips(t, own, components, given, made, blocks);
+  if (element_.loose && components > 0) give_strips(t, own, components, given, made, blocks);
   note_partition(t, total, outcome);
   finish_groups(t, outcome.covered_area + extended, batch, blocks, outcome);
   return outcome;
@@ -555,19 +556,22 @@ void ElementTransfer::finish_groups(std::int32_t t, double integrated, bool batc
   const auto start =
       timed ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
   std::size_t c0 = 0;
-  if (blocks != nullptr) finish_blocks(groups_[0], t, sums_[0], integrated, *blocks, outcome);
+  if (blocks != nullptr)
+    finish_blocks(groups_[0], t, element_.groups[0].sums, integrated, *blocks, outcome);
   for (std::size_t i = 0; i < groups_.size() && blocks == nullptr; ++i) {
+    GroupState& own = element_.groups[i];
     const auto nc = static_cast<std::size_t>(groups_[i].components);
-    const std::span<const double> mass = std::span(masses_).subspan(c0, nc);
+    const std::span<const double> mass = std::span(element_.masses).subspan(c0, nc);
     const std::span<double> result = groups_[i].target_out(t);
     c0 += nc;
     if (finish_straight(i, t, mass, integrated, result, outcome)) continue;
-    if (have_moments_[i] != 0) moments_to_powers(i, t);
+    begin_sums(i);
+    if (own.has_moments) moments_to_powers(i, t);
     std::span<const double> whole;
     // Around open joints in a plane that makes donors long, sums are no sharper than those are.
-    const bool blurred = loose_ && target_.rounding > 0.0;
-    if (outcome.uncovered_area == 0.0 && batch && !blurred) whole = whole_[i];
-    finish(groups_[i], t, sums_[i], whole, mass, base_[i], integrated, result, outcome);
+    const bool blurred = element_.loose && target_.rounding > 0.0;
+    if (outcome.uncovered_area == 0.0 && batch && !blurred) whole = own.whole;
+    finish(groups_[i], t, own.sums, whole, mass, own.base, integrated, result, outcome);
   }
   if (timed) {
     outcome.solve_seconds =

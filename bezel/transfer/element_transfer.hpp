@@ -81,7 +81,7 @@ class ElementTransfer {
   ///         are ready for take(k), the others want process()
   std::size_t begin_together(std::span<const std::int32_t> elements, const OverlayList& overlays,
                              std::size_t first);
-  bool together(std::size_t k) const { return together_[k]; }
+  bool together(std::size_t k) const { return together_.ready[k]; }
   ElementOutcome take(std::size_t k, std::int32_t t, const ElementPieces& own, GivenList& given);
   /// From now on only masses given by these donor elements are kept (nonzero; empty: all).
   void keep_masses_of(std::span<const std::uint8_t> donors) { keep_masses_of_ = donors; }
@@ -91,8 +91,22 @@ class ElementTransfer {
     Vec2 x, dx;                       // point and derivative times weight, in the plane
     std::array<double, 2> q{}, dq{};  // the same in reference coordinates, when used
   };
+  /// A list that keeps its storage when an empty one is assigned to it.
+  template <class T>
+  struct Refilled : std::vector<T> {
+    using std::vector<T>::vector;
+    Refilled(const Refilled&) = default;
+    Refilled& operator=(const Refilled& other) {
+      if (other.empty())
+        this->clear();
+      else
+        std::vector<T>::operator=(other);
+      return *this;
+    }
+    ~Refilled() = default;
+  };
   struct Accumulators {
-    std::vector<double> product, basis, mass;
+    Refilled<double> product, basis, mass;
     void reset(std::size_t functions, std::size_t components, std::size_t padding = 0);
   };
   /// Cholesky factor of a target mass matrix, up to a factor of the matrix, the inverses of its
@@ -102,21 +116,79 @@ class ElementTransfer {
     double scale = 1.0;
   };
 
-  const IntervalRule& rule(int points);
-  void boundary_nodes(std::span<const Segment> run, int degree);
-  struct RunShape {
-    Vec2 centre;    // mean of the corners
-    Vec2 relative;  // the same, from origin_
-    double area;
-    double gap;  // the widest open joint
+  // What is known of an element, or of a region, while it is worked on is in one object. Before the
+  // next a new one is assigned to it as a whole, so that nothing is left of the one before; its
+  // lists keep their storage.
+
+  /// A straight piece across an open joint, from the element's origin.
+  struct Bridge {
+    Vec2 from, step;
   };
-  /// Also fills piece_control_ and bridges_.
-  RunShape run_shape(std::span<const Segment> run);
-  /// Of what piece_control_ holds, from the origin.
-  double twice_piece_area() const;
-  double bridge_joints();
-  /// Starts and steps of bridges_ in the plane.
-  std::span<const std::array<Vec2, 2>> plane_bridges();
+  /// The boundary of a region.
+  struct RegionShape {
+    std::span<const Segment> run;
+    Vec2 centre;    ///< mean of the corners
+    Vec2 relative;  ///< the same, from the element's origin
+    double area = 0;
+    double gap = 0;          ///< the widest open joint
+    Refilled<Vec2> control;  ///< of the pieces and bridges, from the centre
+    Refilled<int> degree;    ///< of each
+    Refilled<Bridge> bridges;
+  };
+  struct RegionState {
+    double area = 0;
+    std::int32_t mass_row = -1;  ///< of the list of masses
+    bool bridged = false;
+    bool thin = false;  ///< goes by thin_shape() and add_thin_pair()
+  };
+  /// One group of fields on the element.
+  struct GroupState {
+    std::size_t functions = 0;  ///< of the target element
+    bool has_moments = false, has_sums = false;
+    Accumulators moments;    ///< with monomials, when has_moments
+    Accumulators sums;       ///< with powers of barycentrics, of what is not in the moments, when
+                             ///< has_sums
+    Refilled<double> base;   ///< [component] taken off before integrating, and padding
+    Refilled<double> whole;  ///< moments of all regions together: of batched groups on
+                             ///< curved elements
+    Refilled<double> region_mass;  ///< [region][component]
+  };
+  struct ElementState {
+    explicit ElementState(std::size_t group_count) : groups(group_count) {}
+    Vec2 origin;         ///< of the pieces' control points
+    bool loose = false;  ///< joints may be open a little
+    Refilled<RegionState> regions;
+    Refilled<double> masses;  ///< received: all groups' components in order, and padding
+    std::vector<GroupState> groups;
+    bool has_segments = false;
+    Refilled<Segment> segments;     ///< of all regions, one after the other, when has_segments
+    Refilled<std::size_t> run_end;  ///< by region: likewise
+  };
+  /// Of elements that are worked on together.
+  struct BatchState {
+    std::array<bool, lanes> ready{};
+    bool all_ready = false;
+    bool solved = false;
+    TargetPlaces::Row defect{};  ///< of masses, when solved
+    double seconds = 0;          ///< that the solutions took
+  };
+  /// One group of fields on these elements, filled as a whole.
+  struct GroupBatch {
+    ElementSums sums;
+    std::vector<double> base;   ///< [element][component] and padding
+    std::vector<double> whole;  ///< on curved elements: [element][n], GroupState::whole of each
+  };
+
+  const IntervalRule& rule(int points);
+  void begin_element(std::int32_t t, bool loose);
+  void boundary_nodes(const RegionShape& shape, int degree);
+  /// Valid until the next call.
+  const RegionShape& shape_of(std::span<const Segment> run);
+  /// Of the pieces about where they are taken from.
+  static double twice_piece_area(const RegionShape& shape);
+  double bridge_joints(RegionShape& shape);
+  /// Starts and steps of bridges in the plane.
+  std::span<const std::array<Vec2, 2>> plane_bridges(const RegionShape& shape);
   void note_partition(std::int32_t t, double total, ElementOutcome& outcome) const;
   // Ordinary elements together (element_together.cpp).
   bool may_be_ordinary(std::int32_t t, const ElementPieces& own, std::size_t first_region);
@@ -151,10 +223,10 @@ class ElementTransfer {
   std::array<double, 2> thin_strip_place(const Group& g, std::int32_t d, double s);
   LinearPlace thin_linear_place(const Group& g, std::int32_t d) const;
   void find_thin_regions(std::int32_t t, const ElementPieces& own);
-  /// As run_shape(), from the centre of thin_ and in its plane.
-  RunShape thin_shape(std::int32_t t, std::int32_t d, std::span<const Segment> run,
-                      bool donors_plane);
-  void note_thin_region(std::int32_t t, std::int32_t d, const RunShape& shape,
+  /// As shape_of(), from the centre of thin_ and in its plane.
+  const RegionShape& thin_shape(std::int32_t t, std::int32_t d, std::span<const Segment> run,
+                                bool donors_plane);
+  void note_thin_region(std::int32_t t, std::int32_t d, const RegionShape& shape,
                         ElementOutcome& outcome) const;
   void thin_nodes(int degree);
   /// Calls visit(weight, x) at the points of a rule that is exact for the given degree in the
@@ -166,12 +238,12 @@ class ElementTransfer {
   template <class Visit>
   void thin_reference_fan(const std::array<double, 2>& centre, int degree, const Visit& visit);
   void add_thin_pair(const Group& g, std::int32_t t, std::int32_t d, std::span<const Segment> run,
-                     double area, Accumulators& sums, std::span<double> mass);
+                     double area, GroupState& own, std::span<double> mass);
   // By moments (element_moments.cpp).
   static bool by_moments(const Group& g, std::int32_t t, std::int32_t d);
   const PieceTable& piece_table(int degree, int moments);
-  bool add_pair_moments(const Group& g, std::int32_t t, std::int32_t d, const RunShape& shape,
-                        const double* base, Accumulators& sums, std::span<double> mass);
+  bool add_pair_moments(const Group& g, std::int32_t t, std::int32_t d, const RegionShape& shape,
+                        GroupState& own, std::span<double> mass);
   /// By moments about the region's own centre, or by quadrature.
   void add_apart(std::size_t i, std::int32_t t, std::int32_t d, std::span<const Segment> run,
                  double area, bool thin, std::span<double> mass);
@@ -182,6 +254,7 @@ class ElementTransfer {
   static bool can_batch(const Group& g);
   static TargetPlace target_place(const Group& g, std::int32_t t);
   void begin_moments(std::size_t group);
+  void begin_sums(std::size_t group);
   void choose_base(std::size_t group, const ElementPieces& own);
   template <std::size_t points>
   void fill_curves(PieceBatch& batch, std::span<const BoundaryPiece> pieces) const;
@@ -189,34 +262,33 @@ class ElementTransfer {
   bool shape_regions(std::int32_t t, const ElementPieces& own, std::size_t first,
                      ElementOutcome& outcome);
   /// Group i on all regions, their sums already in the batch when `summed`.
-  void add_batched(std::size_t i, std::int32_t t, const ElementPieces& own, bool summed,
-                   std::span<double> mass);
+  void add_batched(std::size_t i, std::int32_t t, const ElementPieces& own, bool summed);
   /// The segments around all regions, one region after the other.
   std::span<const Segment> all_runs(const ElementPieces& own);
   /// The segments around region k.
   std::span<const Segment> run_of(const ElementPieces& own, std::size_t k) {
     const auto all = all_runs(own);
-    return all.subspan(run_begin(k), run_end_[k] - run_begin(k));
+    return all.subspan(run_begin(k), element_.run_end[k] - run_begin(k));
   }
-  std::size_t run_begin(std::size_t k) const { return k == 0 ? 0 : run_end_[k - 1]; }
+  std::size_t run_begin(std::size_t k) const { return k == 0 ? 0 : element_.run_end[k - 1]; }
   void note_region(std::int32_t t, std::int32_t d, double area, double gap,
-                   ElementOutcome& outcome) const;
+                   std::span<const Bridge> bridges, ElementOutcome& outcome) const;
   /// Sets shifted_ to a donor's coefficients less a constant for each component.
   void take_off(int degree, std::span<const double> scaled, std::span<const double> constants);
-  void flush(const Group& g, std::int32_t d, int target_degree, Accumulators& sums);
-  void add_pair(const Group& g, std::int32_t t, std::int32_t d, std::span<const Segment> run,
-                double area, const Vec2& centre, Accumulators& sums, std::span<double> mass);
-  void add_extension(const Group& g, std::int32_t t, std::span<const Segment> run, double area,
-                     const Vec2& centre, Accumulators& sums, std::span<double> made,
-                     ExtensionReport& report);
+  /// Adds what the points give with a donor's polynomial less the constants.
+  void flush(const Group& g, std::int32_t d, int target_degree, std::span<const double> constants,
+             Accumulators& sums);
+  void add_pair(const Group& g, std::int32_t t, std::int32_t d, const RegionShape& shape,
+                double area, GroupState& own, std::span<double> mass);
+  void add_extension(const Group& g, std::int32_t t, const RegionShape& shape, double area,
+                     GroupState& own, std::span<double> made, ExtensionReport& report);
   /// Calls visit(weight, target place, donor, donor place) at the points of a rule for the part of
   /// t that no donor covers.
   template <class Visit>
-  void extension_points(const Group& g, std::int32_t t, std::span<const Segment> run,
-                        const Vec2& centre, ExtensionReport& report, const Visit& visit);
-  void extension_blocks(const Group& g, std::int32_t t, std::span<const Segment> run, double area,
-                        const Vec2& centre, Accumulators& sums, ElementBlocks& blocks,
-                        ExtensionReport& report);
+  void extension_points(const Group& g, std::int32_t t, const RegionShape& shape,
+                        ExtensionReport& report, const Visit& visit);
+  void extension_blocks(const Group& g, std::int32_t t, const RegionShape& shape, double area,
+                        Accumulators& sums, ElementBlocks& blocks, ExtensionReport& report);
   static void keep_pair(std::int32_t d, Accumulators& sums, std::span<const double> mass,
                         ElementBlocks& blocks);
   void finish_blocks(const Group& g, std::int32_t t, Accumulators& sums, double area,
@@ -260,7 +332,7 @@ class ElementTransfer {
   bool donor_places(const Group& g, std::int32_t d, std::size_t first);
   std::array<double, 2> donor_place(const Group& g, std::int32_t d, const Vec2& x,
                                     std::array<double, 3>& warm, bool& have_warm) const;
-  void reference_nodes(const OverlayMesh& mesh, std::int32_t element, std::span<const Segment> run,
+  void reference_nodes(const OverlayMesh& mesh, std::int32_t element, const RegionShape& shape,
                        bool source, int degree);
   /// Nodes along a part of an element's own side, which is straight in the reference triangle.
   void own_side_nodes(const OverlayMesh& mesh, std::int32_t element, const Part& own, int degree);
@@ -275,73 +347,47 @@ class ElementTransfer {
   std::span<Group> groups_;
   Uncovered policy_;
   std::span<const std::uint8_t> keep_masses_of_;
-  std::vector<std::int32_t> mass_row_;  // by region: of the list of masses, or -1
-  std::uint64_t elements_ = 0;          // done so far
+  std::vector<std::uint8_t> batched_;         // by group: goes by add_batched
+  std::vector<std::uint8_t> fitted_;          // by group: goes by fit_
+  bool some_together_ = false;                // the meshes and groups allow it
+  std::uint64_t elements_ = 0, batches_ = 0;  // done so far
+
+  ElementState element_;
+  const ElementState no_element_;  // with the groups
+  RegionShape shape_;
+  BatchState together_;
+  ElementBatch ordinary_;
+  std::vector<GroupBatch> group_batches_;
+  PieceBatch batch_;  // of the element's pieces
+  PairFit fit_;
+  std::vector<std::uint8_t> thin_donor_;  // by donor element; empty: none is thin
+  ThinRegion thin_;                       // of the region at work, and elements brought there
+  MappedElement thin_donor_map_, thin_target_map_;
+
+  // Tables.
   std::vector<IntervalRule> rules_;
+  std::vector<std::unique_ptr<PieceTable>> tables_;
+  std::vector<MassRule> mass_rules_;
+  std::deque<MappedMass> mapped_masses_;
+
+  // Room that is filled before each use.
   std::vector<Node> nodes_;
-  Vec2 origin_;  // of the pieces' control points, on the target element
-  std::vector<Vec2> piece_control_, local_control_;
-  std::vector<int> piece_degree_;
-  // Straight pieces across open joints of the region run_shape was asked for last, from origin_.
-  struct Bridge {
-    Vec2 from, step;
-  };
-  std::vector<Bridge> bridges_;
+  std::vector<Vec2> local_control_;
   std::vector<std::array<Vec2, 2>> plane_bridges_;
   std::vector<Vec2> piece_starts_, piece_ends_;
-  bool loose_ = false;  // this element's joints may be open a little
   std::vector<MomentPiece> moment_pieces_;
-  std::vector<std::unique_ptr<PieceTable>> tables_;
   std::vector<double> moments_;
-  PieceBatch batch_;
   std::vector<BatchRegion> regions_;
-  std::vector<double> area_;               // by region
-  std::vector<std::uint8_t> bridged_;      // by region: has bridges
-  std::vector<double> region_mass_;        // of one group, [region][component]
-  std::vector<std::uint8_t> thin_donor_;   // by donor element; empty: none is thin
-  std::vector<std::uint8_t> thin_region_;  // by region: by thin_shape() and add_thin_pair()
-  ThinRegion thin_;
-  MappedElement thin_donor_map_, thin_target_map_;
-  std::vector<Segment> segments_;     // of this element, when have_segments_
-  std::vector<std::size_t> run_end_;  // by region
-  bool have_segments_ = false;
   std::vector<double> w_, tu_, tv_, du_, dv_;  // quadrature points, the first count_ in use
-  std::size_t count_ = 0;
+  std::size_t count_ = 0;                      // none but from a fan to flush()
   std::vector<double> fan_w_, fan_u_, fan_v_, fan_x_, fan_y_, fan_det_;  // of reference_fan
   std::vector<Vec2> plane_;  // points whose places in a donor element are wanted
   std::vector<Lambda> start_;
   std::vector<InverseResult> inverse_;
-  std::vector<Accumulators> sums_, moment_sums_;
-  std::vector<std::vector<double>> whole_;  // by group, of batched ones on curved elements: moments
-                                            // of all regions together
   std::vector<double> powers_;
   std::vector<double> shifted_;
-  std::span<const double> taken_;           // base_ of the group at work
-  std::vector<std::vector<double>> base_;   // by group, [component]: taken off before integrating
-  std::vector<std::size_t> functions_;      // by group: of the target element at work
-  std::vector<std::uint8_t> have_moments_;  // by group: for this element
-  std::vector<std::uint8_t> extended_;      // by group: sums_ hold what moment_sums_ lack
-  std::vector<std::uint8_t> batched_;       // by group: goes by add_batched
-  // Of elements that are worked on together.
-  bool some_together_ = false;  // the meshes and groups allow it
-  ElementBatch ordinary_;
-  std::array<bool, lanes> together_{};
-  bool all_together_ = false;
-  std::vector<ElementSums> together_sums_;           // by group
-  std::vector<std::vector<double>> together_base_;   // by group, [element][component] and padding
-  std::vector<std::vector<double>> together_whole_;  // by group, on curved elements: [element][n],
-                                                     // whole_ of each
-  TargetPlaces::Row together_defect_{};              // of masses, when solved_together_
-  bool solved_together_ = false;
-  double together_seconds_ = 0;  // that the solutions took
-  std::uint64_t batches_ = 0;    // done so far
-  PairFit fit_;
-  std::vector<std::uint8_t> fitted_;  // by group: goes by fit_
   std::vector<double> fitted_mass_;
-  std::vector<double> masses_;
   std::vector<double> scratch_;
-  std::vector<MassRule> mass_rules_;
-  std::deque<MappedMass> mapped_masses_;
   Factor factor_, reference_factor_;
   int reference_degree_ = -1;
 };

@@ -43,6 +43,15 @@ Box2 box_in(const AreaMap& map, std::span<const Vec2> control) {
   return box;
 }
 
+/// Whether an element has a side that no other one has.
+bool is_outer(const OverlayMesh& mesh, std::int32_t e) {
+  const auto& sides = mesh.element_edges[static_cast<std::size_t>(e)];
+  return std::any_of(sides.begin(), sides.end(), [&](const SideEdge& side) {
+    const auto& beside = mesh.edge_sides[side.edge.index()];
+    return beside[0] == exterior || beside[1] == exterior;
+  });
+}
+
 Box2 grown(Box2 box, double by) {
   box.lo -= Vec2{{by, by}};
   box.hi += Vec2{{by, by}};
@@ -118,23 +127,18 @@ std::vector<FlatSweep::Cluster> FlatSweep::clusters(std::span<const std::int32_t
 }
 
 // The donors that may meet an element, or continue a field to it: those whose boxes meet its own in
-// both planes. In the files' plane alone the boxes of thin turned elements meet many others.
-void FlatSweep::add_neighbourhood(Cluster& cluster) {
-  Share& share = cluster.share;
-  share.chunk_count = 1;
-  Box2 all;
-  std::vector<Box2> own;
-  Box2 all_there;
-  for (const std::int32_t t : share.own) {
-    share.targets.push_back(t);
-    for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
-      const std::int32_t beyond = target_.across(t, side.edge.value);
-      if (beyond != exterior) share.targets.push_back(beyond);
-    }
+// both planes. In the files' plane alone the boxes of thin turned elements meet many others. Where
+// the donor mesh may end in an element, the field is continued by the donors at hand: they must not
+// depend on the elements that it shares a plane with.
+std::vector<std::size_t> FlatSweep::add_neighbourhood(Cluster& cluster) {
+  Box2 all, all_there;
+  std::vector<Box2> own, around;
+  for (const std::int32_t t : cluster.share.own) {
     all.include(widened(target_.element_box[static_cast<std::size_t>(t)], 0.0));
     const Box2 there = box_in(cluster.map, target_.element(t));
-    own.push_back(grown(there, there.diameter()));
-    all_there.include(own.back());
+    own.push_back(widened(there, 0.0));
+    around.push_back(grown(there, there.diameter()));
+    all_there.include(around.back());
   }
   search_.query(all, {}, memory_, found_);
   std::vector<std::int32_t> near;
@@ -146,29 +150,46 @@ void FlatSweep::add_neighbourhood(Cluster& cluster) {
     boxes.push_back(there);
   }
   const Bvh tree(boxes);
-  std::vector<std::uint8_t> wanted(near.size(), 0);
+  Cluster kept{cluster.map, {}, {}};
+  std::vector<std::size_t> apart;
+  std::vector<std::int32_t> met;
   for (std::size_t i = 0; i < own.size(); ++i) {
-    const Box2& box = target_.element_box[static_cast<std::size_t>(share.own[i])];
+    const std::int32_t t = cluster.share.own[i];
+    const Box2& box = target_.element_box[static_cast<std::size_t>(t)];
     const Box2 wide = widened(box, 0.0);
-    bool any = false;
-    tree.query(own[i], [&](std::int32_t k) {
+    met.clear();
+    bool reached = false, outer = false;
+    tree.query(around[i], [&](std::int32_t k) {
       const auto at = static_cast<std::size_t>(k);
       if (!donor_.element_box[static_cast<std::size_t>(near[at])].overlaps(wide)) return;
-      wanted[at] = 1;
-      any = true;
+      met.push_back(near[at]);
+      if (!boxes[at].overlaps(own[i])) return;
+      reached = true;
+      outer = outer || is_outer(donor_, near[at]);
     });
-    if (any) continue;
-    donors_in_reach(donor_, search_, box, found_);
-    append(found_, share.donors);
+    const bool covered = reached && !outer;
+    if (!covered && own.size() > 1) {
+      apart.push_back(cluster.place[i]);
+      continue;
+    }
+    if (met.empty()) donors_in_reach(donor_, search_, box, met);
+    append(met, kept.share.donors);
+    kept.share.own.push_back(t);
+    kept.place.push_back(cluster.place[i]);
+    kept.share.targets.push_back(t);
+    for (const SideEdge& side : target_.element_edges[static_cast<std::size_t>(t)]) {
+      const std::int32_t beyond = target_.across(t, side.edge.value);
+      if (beyond != exterior) kept.share.targets.push_back(beyond);
+    }
   }
-  for (std::size_t k = 0; k < near.size(); ++k)
-    if (wanted[k] != 0) share.donors.push_back(near[k]);
-  make_unique(share.targets);
-  make_unique(share.donors);
+  kept.share.chunk_count = 1;
+  make_unique(kept.share.targets);
+  make_unique(kept.share.donors);
+  cluster = std::move(kept);
+  return apart;
 }
 
-bool FlatSweep::work_on(Cluster& cluster, ChunkResult& result) {
-  add_neighbourhood(cluster);
+bool FlatSweep::work_on(const Cluster& cluster, ChunkResult& result) {
   MessageWriter to, from;
   writer_->write(cluster.share, to, cluster.map);
   const std::vector<std::byte> work = to.take();
@@ -202,13 +223,18 @@ void FlatSweep::work_on(std::span<const std::int32_t> elements, std::vector<std:
   }
   if (with_blocks_) blocks_.resize(elements.size());
   for (Cluster& cluster : all) {
-    if (work_on(cluster, result)) {
-      for (const std::size_t i : cluster.place) done[i] = 1;
-      continue;
+    std::vector<std::size_t> apart = add_neighbourhood(cluster);
+    if (!cluster.place.empty()) {
+      if (work_on(cluster, result)) {
+        for (const std::size_t i : cluster.place) done[i] = 1;
+      } else {
+        append(cluster.place, apart);
+      }
     }
-    for (const std::size_t i : cluster.place) {
+    for (const std::size_t i : apart) {
       Cluster alone{cluster.map, {}, {i}};
       alone.share.own.push_back(elements[i]);
+      add_neighbourhood(alone);
       done[i] = work_on(alone, result) ? 1 : 0;
     }
   }

@@ -42,9 +42,11 @@ class FlatSweep {
     std::vector<std::size_t> place;
   };
   std::vector<Cluster> clusters(std::span<const std::int32_t> elements) const;
-  void add_neighbourhood(Cluster& cluster);
+  /// Finds what the elements need besides; those that may have a gap are taken out.
+  /// @return  their places; of an element that is alone none
+  std::vector<std::size_t> add_neighbourhood(Cluster& cluster);
   /// False, and nothing is added, where regions do not close.
-  bool work_on(Cluster& cluster, ChunkResult& result);
+  bool work_on(const Cluster& cluster, ChunkResult& result);
 
   const OverlayMesh& donor_;
   const OverlayMesh& target_;

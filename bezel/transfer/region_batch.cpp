@@ -58,7 +58,7 @@ HWY_INLINE void place_regions(const TargetPlace& place, const PieceBatch& batch,
     const bool has = l < regions.size() && regions[l].donor != nullptr;
     keep[l] = has ? 1.0 : 0.0;
     if (has)
-      std::memcpy(&frame[l], regions[l].frame, sizeof(Frame));
+      frame[l] = load(reinterpret_cast<const double*>(regions[l].frame));
     else
       frame[l] = Lanes{};
   }

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include "bezel/numeric/lanes.hpp"
 #include "hwy/highway.h"
@@ -38,149 +39,154 @@ HWY_INLINE Lanes select(const Mask& mask, const Lanes& yes, const Lanes& no) {
 
 #else
 
-// Elsewhere as several of them: g++ takes vectors wider than the registers apart by way of memory,
-// which is five times as slow.
+// Elsewhere as halves, and halves of halves, that fit registers: g++ takes wider vectors apart by
+// way of memory, and arrays of registers too, which is five times as slow.
 #if HWY_TARGET <= HWY_AVX2
 constexpr std::size_t part_size = lanes / 2;
 #else
 constexpr std::size_t part_size = lanes / 4;
 #endif
-constexpr std::size_t part_count = lanes / part_size;
+using LanesPart [[gnu::vector_size(sizeof(double) * part_size)]] = double;
 
-struct Lanes {
-  using Part [[gnu::vector_size(sizeof(double) * part_size)]] = double;
-  using Truth = decltype(Part{} < Part{});
-  struct Mask {
-    Truth part[part_count];
-    HWY_INLINE std::int64_t operator[](std::size_t l) const {
-      return part[l / part_size][l % part_size];
-    }
-    friend HWY_INLINE Mask operator&(const Mask& a, const Mask& b) {
-      return each<Mask>([&](std::size_t i) -> Truth { return a.part[i] & b.part[i]; });
-    }
-  };
-  Part part[part_count];
+template <class Truth>
+HWY_INLINE LanesPart select(const Truth& mask, const LanesPart& yes, const LanesPart& no) {
+  return mask ? yes : no;
+}
 
-  template <class Result, class Make>
-  HWY_INLINE static Result each(const Make& make) {
-    Result r;
-#pragma GCC unroll 4
-    for (std::size_t i = 0; i < part_count; ++i) r.part[i] = make(i);
-    return r;
-  }
-  HWY_INLINE static Lanes all(double x) {
-    return each<Lanes>([&](std::size_t) -> Part { return x - Part{}; });
-  }
+template <class Half>
+struct Two {
+  Half low, high;
+
   HWY_INLINE double operator[](std::size_t l) const {
-    return part[l / part_size][l % part_size];
+    return reinterpret_cast<const double*>(this)[l];
   }
-  HWY_INLINE Lanes operator-() const {
-    return each<Lanes>([&](std::size_t i) -> Part { return -part[i]; });
+  HWY_INLINE Two operator-() const { return {-low, -high}; }
+  HWY_INLINE Two& operator+=(const Two& b) { return *this = *this + b; }
+  HWY_INLINE Two& operator-=(const Two& b) { return *this = *this - b; }
+  HWY_INLINE Two& operator*=(const Two& b) { return *this = *this * b; }
+  HWY_INLINE Two& operator-=(double b) { return *this = *this - b; }
+  HWY_INLINE Two& operator*=(double b) { return *this = *this * b; }
+  friend HWY_INLINE Two operator+(const Two& a, const Two& b) {
+    return {a.low + b.low, a.high + b.high};
   }
-  friend HWY_INLINE Lanes operator+(const Lanes& a, const Lanes& b) {
-    return each<Lanes>([&](std::size_t i) -> Part { return a.part[i] + b.part[i]; });
+  friend HWY_INLINE Two operator-(const Two& a, const Two& b) {
+    return {a.low - b.low, a.high - b.high};
   }
-  friend HWY_INLINE Lanes operator-(const Lanes& a, const Lanes& b) {
-    return each<Lanes>([&](std::size_t i) -> Part { return a.part[i] - b.part[i]; });
+  friend HWY_INLINE Two operator*(const Two& a, const Two& b) {
+    return {a.low * b.low, a.high * b.high};
   }
-  friend HWY_INLINE Lanes operator*(const Lanes& a, const Lanes& b) {
-    return each<Lanes>([&](std::size_t i) -> Part { return a.part[i] * b.part[i]; });
+  friend HWY_INLINE Two operator/(const Two& a, const Two& b) {
+    return {a.low / b.low, a.high / b.high};
   }
-  friend HWY_INLINE Lanes operator/(const Lanes& a, const Lanes& b) {
-    return each<Lanes>([&](std::size_t i) -> Part { return a.part[i] / b.part[i]; });
-  }
-  friend HWY_INLINE Lanes operator+(const Lanes& a, double b) {
-    return a + all(b);
-  }
-  friend HWY_INLINE Lanes operator-(const Lanes& a, double b) {
-    return a - all(b);
-  }
-  friend HWY_INLINE Lanes operator*(const Lanes& a, double b) {
-    return a * all(b);
-  }
-  friend HWY_INLINE Lanes operator/(const Lanes& a, double b) {
-    return a / all(b);
-  }
-  friend HWY_INLINE Lanes operator+(double a, const Lanes& b) {
-    return all(a) + b;
-  }
-  friend HWY_INLINE Lanes operator-(double a, const Lanes& b) {
-    return all(a) - b;
-  }
-  friend HWY_INLINE Lanes operator*(double a, const Lanes& b) {
-    return all(a) * b;
-  }
-  friend HWY_INLINE Lanes operator/(double a, const Lanes& b) {
-    return all(a) / b;
-  }
-  HWY_INLINE Lanes& operator+=(const Lanes& b) {
-    return *this = *this + b;
-  }
-  HWY_INLINE Lanes& operator*=(const Lanes& b) {
-    return *this = *this * b;
-  }
-  HWY_INLINE Lanes& operator-=(const Lanes& b) {
-    return *this = *this - b;
-  }
-  HWY_INLINE Lanes& operator-=(double b) {
-    return *this = *this - b;
-  }
-  HWY_INLINE Lanes& operator*=(double b) {
-    return *this = *this * b;
-  }
-  friend HWY_INLINE Mask operator<(const Lanes& a, const Lanes& b) {
-    return each<Mask>([&](std::size_t i) -> Truth { return a.part[i] < b.part[i]; });
-  }
-  friend HWY_INLINE Mask operator<=(const Lanes& a, double b) {
-    return each<Mask>([&](std::size_t i) -> Truth { return a.part[i] <= Part{} + b; });
-  }
-  friend HWY_INLINE Mask operator<=(const Lanes& a, const Lanes& b) {
-    return each<Mask>([&](std::size_t i) -> Truth { return a.part[i] <= b.part[i]; });
-  }
-  friend HWY_INLINE Mask operator>=(const Lanes& a, double b) {
-    return each<Mask>([&](std::size_t i) -> Truth { return a.part[i] >= Part{} + b; });
-  }
-  friend HWY_INLINE Mask operator>(const Lanes& a, double b) {
-    return each<Mask>([&](std::size_t i) -> Truth { return a.part[i] > Part{} + b; });
-  }
-  friend HWY_INLINE Mask operator==(const Lanes& a, const Lanes& b) {
-    return each<Mask>([&](std::size_t i) -> Truth { return a.part[i] == b.part[i]; });
-  }
+  friend HWY_INLINE Two operator+(const Two& a, double b) { return {a.low + b, a.high + b}; }
+  friend HWY_INLINE Two operator-(const Two& a, double b) { return {a.low - b, a.high - b}; }
+  friend HWY_INLINE Two operator*(const Two& a, double b) { return {a.low * b, a.high * b}; }
+  friend HWY_INLINE Two operator/(const Two& a, double b) { return {a.low / b, a.high / b}; }
+  friend HWY_INLINE Two operator+(double a, const Two& b) { return {a + b.low, a + b.high}; }
+  friend HWY_INLINE Two operator-(double a, const Two& b) { return {a - b.low, a - b.high}; }
+  friend HWY_INLINE Two operator*(double a, const Two& b) { return {a * b.low, a * b.high}; }
+  friend HWY_INLINE Two operator/(double a, const Two& b) { return {a / b.low, a / b.high}; }
 };
 
-HWY_INLINE Lanes select(const Lanes::Mask& mask, const Lanes& yes, const Lanes& no) {
-  return Lanes::each<Lanes>(
-      [&](std::size_t i) -> Lanes::Part { return mask.part[i] ? yes.part[i] : no.part[i]; });
+/// What comparisons of halves give, side by side.
+template <class Half>
+struct TwoTruths {
+  Half low, high;
+  HWY_INLINE std::int64_t operator[](std::size_t l) const {
+    return reinterpret_cast<const std::int64_t*>(this)[l];
+  }
+  friend HWY_INLINE TwoTruths operator&(const TwoTruths& a, const TwoTruths& b) {
+    return {a.low & b.low, a.high & b.high};
+  }
+};
+template <class Half>
+TwoTruths(Half, Half) -> TwoTruths<Half>;
+
+template <class Half>
+HWY_INLINE auto operator<(const Two<Half>& a, const Two<Half>& b) {
+  return TwoTruths{a.low < b.low, a.high < b.high};
 }
+template <class Half>
+HWY_INLINE auto operator<=(const Two<Half>& a, const Two<Half>& b) {
+  return TwoTruths{a.low <= b.low, a.high <= b.high};
+}
+template <class Half>
+HWY_INLINE auto operator==(const Two<Half>& a, const Two<Half>& b) {
+  return TwoTruths{a.low == b.low, a.high == b.high};
+}
+template <class Half>
+HWY_INLINE auto operator<=(const Two<Half>& a, double b) {
+  return TwoTruths{a.low <= b, a.high <= b};
+}
+template <class Half>
+HWY_INLINE auto operator>=(const Two<Half>& a, double b) {
+  return TwoTruths{a.low >= b, a.high >= b};
+}
+template <class Half>
+HWY_INLINE auto operator>(const Two<Half>& a, double b) {
+  return TwoTruths{a.low > b, a.high > b};
+}
+template <class Truth, class Half>
+HWY_INLINE Two<Half> select(const TwoTruths<Truth>& mask, const Two<Half>& yes,
+                            const Two<Half>& no) {
+  return {select(mask.low, yes.low, no.low), select(mask.high, yes.high, no.high)};
+}
+
+#if HWY_TARGET <= HWY_AVX2
+using Lanes = Two<LanesPart>;
+#else
+using Lanes = Two<Two<LanesPart> >;
+#endif
 
 #endif
 
-// What fits a register.
+// What fits a register, wherever it lies.
 #if HWY_TARGET <= HWY_AVX3
 using LanesPart = Lanes;
-#else
-using LanesPart = Lanes::Part;
 #endif
+using LoosePart
+    [[gnu::vector_size(sizeof(LanesPart)), gnu::aligned(alignof(double)), gnu::may_alias]] = double;
 
+template <class Some>
+HWY_INLINE Some load_as(const double* p) {
+  if constexpr (std::is_same_v<Some, LanesPart>) {
+    return *reinterpret_cast<const LoosePart*>(p);
+  } else {
+    using Half = decltype(Some::low);
+    return {load_as<Half>(p), load_as<Half>(p + sizeof(Half) / sizeof(double))};
+  }
+}
+template <class Some>
+HWY_INLINE void store_as(const Some& x, double* p) {
+  if constexpr (std::is_same_v<Some, LanesPart>) {
+    *reinterpret_cast<LoosePart*>(p) = x;
+  } else {
+    store_as(x.low, p);
+    store_as(x.high, p + sizeof(x.low) / sizeof(double));
+  }
+}
 HWY_INLINE Lanes load(const double* p) {
-  Lanes x;
-  std::memcpy(&x, p, sizeof x);
-  return x;
+  return load_as<Lanes>(p);
 }
 HWY_INLINE void store(const Lanes& x, double* p) {
-  std::memcpy(p, &x, sizeof x);
+  store_as(x, p);
 }
 #if !(HWY_TARGET <= HWY_AVX3)
 HWY_INLINE Lanes lanes_of(double a, double b, double c, double d, double e, double f, double g,
                           double h) {
-  const double all[lanes] = {a, b, c, d, e, f, g, h};
-  return load(all);
+#if HWY_TARGET <= HWY_AVX2
+  return {LanesPart{a, b, c, d}, LanesPart{e, f, g, h}};
+#else
+  return {{LanesPart{a, b}, LanesPart{c, d}}, {LanesPart{e, f}, LanesPart{g, h}}};
+#endif
 }
 #endif
 /// The first `count` numbers, at most eight.
 HWY_INLINE void store_part(const Lanes& x, double* p, std::size_t count) {
   if (count >= lanes) return store(x, p);
-  for (std::size_t l = 0; l < count; ++l) p[l] = x[l];
+  alignas(64) double all[lanes];
+  store(x, all);
+  for (std::size_t l = 0; l < count; ++l) p[l] = all[l];
 }
 
 /// The table's numbers at eight places.
@@ -194,9 +200,8 @@ HWY_INLINE Lanes pick(const double* table, const std::int64_t* at) {
              reinterpret_cast<double*>(&r));
   return r;
 #else
-  double all[lanes];
-  for (std::size_t l = 0; l < lanes; ++l) all[l] = table[at[l]];
-  return load(all);
+  return lanes_of(table[at[0]], table[at[1]], table[at[2]], table[at[3]], table[at[4]],
+                  table[at[5]], table[at[6]], table[at[7]]);
 #endif
 }
 
@@ -208,51 +213,47 @@ HWY_INLINE double mul_add(double a, double b, double c) {
   return a * b + c;
 #endif
 }
-HWY_INLINE Lanes mul_add(const Lanes& a, const Lanes& b, const Lanes& c) {
+template <class Some>
+HWY_INLINE Some mul_add(const Some& a, const Some& b, const Some& c) {
 #if HWY_NATIVE_FMA
-  namespace hn = hwy::HWY_NAMESPACE;
-  using Part = LanesPart;
-  const hn::CappedTag<double, sizeof(Part) / sizeof(double)> d;
-  const auto* x = reinterpret_cast<const double*>(&a);
-  const auto* y = reinterpret_cast<const double*>(&b);
-  const auto* z = reinterpret_cast<const double*>(&c);
-  Lanes r;
-  auto* to = reinterpret_cast<double*>(&r);
-#pragma GCC unroll 4
-  for (std::size_t i = 0; i < lanes; i += sizeof(Part) / sizeof(double))
-    hn::StoreU(hn::MulAdd(hn::LoadU(d, x + i), hn::LoadU(d, y + i), hn::LoadU(d, z + i)), d,
-               to + i);
-  return r;
+  if constexpr (std::is_same_v<Some, LanesPart>) {
+    namespace hn = hwy::HWY_NAMESPACE;
+    const hn::CappedTag<double, sizeof(LanesPart) / sizeof(double)> d;
+    const auto* x = reinterpret_cast<const double*>(&a);
+    const auto* y = reinterpret_cast<const double*>(&b);
+    const auto* z = reinterpret_cast<const double*>(&c);
+    LanesPart r;
+    hn::StoreU(hn::MulAdd(hn::LoadU(d, x), hn::LoadU(d, y), hn::LoadU(d, z)), d,
+               reinterpret_cast<double*>(&r));
+    return r;
+  } else {
+    return {mul_add(a.low, b.low, c.low), mul_add(a.high, b.high, c.high)};
+  }
 #else
   return a * b + c;
 #endif
 }
-HWY_INLINE Lanes mul_add(double a, const Lanes& b, const Lanes& c) {
-#if HWY_TARGET <= HWY_AVX3
-  return mul_add(Lanes{a, a, a, a, a, a, a, a}, b, c);
-#else
-  return mul_add(Lanes::all(a), b, c);
-#endif
+template <class Some>
+HWY_INLINE Some mul_add(double a, const Some& b, const Some& c) {
+  return mul_add(a - Some{}, b, c);
 }
 
-HWY_INLINE Lanes root(const Lanes& x) {
-  Lanes r;
+template <class Some>
+HWY_INLINE Some root(const Some& x) {
+  if constexpr (std::is_same_v<Some, LanesPart>) {
+    LanesPart r;
 #if HWY_TARGET == HWY_SCALAR
-  double all[lanes];
-  store(x, all);
-  for (double& a : all) a = std::sqrt(a);
-  r = load(all);
+    for (std::size_t l = 0; l < sizeof(r) / sizeof(double); ++l) r[l] = std::sqrt(x[l]);
 #else
-  namespace hn = hwy::HWY_NAMESPACE;
-  using Part = LanesPart;
-  const hn::CappedTag<double, sizeof(Part) / sizeof(double)> d;
-  const auto* from = reinterpret_cast<const double*>(&x);
-  auto* to = reinterpret_cast<double*>(&r);
-#pragma GCC unroll 4
-  for (std::size_t i = 0; i < lanes; i += sizeof(Part) / sizeof(double))
-    hn::StoreU(hn::Sqrt(hn::LoadU(d, from + i)), d, to + i);
+    namespace hn = hwy::HWY_NAMESPACE;
+    const hn::CappedTag<double, sizeof(LanesPart) / sizeof(double)> d;
+    hn::StoreU(hn::Sqrt(hn::LoadU(d, reinterpret_cast<const double*>(&x))), d,
+               reinterpret_cast<double*>(&r));
 #endif
-  return r;
+    return r;
+  } else {
+    return {root(x.low), root(x.high)};
+  }
 }
 
 HWY_INLINE double sum_of(const Lanes& x) {
@@ -282,6 +283,28 @@ HWY_INLINE void transpose(Lanes* r) {
   for (int i = 0; i < 4; ++i) {
     r[i] = __builtin_shufflevector(u[i], u[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
     r[i + 4] = __builtin_shufflevector(u[i], u[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+#elif HWY_TARGET <= HWY_AVX2
+  const auto turn = [](const LanesPart& a, const LanesPart& b, const LanesPart& c,
+                       const LanesPart& d, LanesPart* to) {
+    const LanesPart ab0 = __builtin_shufflevector(a, b, 0, 4, 2, 6),
+                    ab1 = __builtin_shufflevector(a, b, 1, 5, 3, 7),
+                    cd0 = __builtin_shufflevector(c, d, 0, 4, 2, 6),
+                    cd1 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    to[0] = __builtin_shufflevector(ab0, cd0, 0, 1, 4, 5);
+    to[1] = __builtin_shufflevector(ab1, cd1, 0, 1, 4, 5);
+    to[2] = __builtin_shufflevector(ab0, cd0, 2, 3, 6, 7);
+    to[3] = __builtin_shufflevector(ab1, cd1, 2, 3, 6, 7);
+  };
+  LanesPart block[4][4];
+  turn(r[0].low, r[1].low, r[2].low, r[3].low, block[0]);
+  turn(r[0].high, r[1].high, r[2].high, r[3].high, block[1]);
+  turn(r[4].low, r[5].low, r[6].low, r[7].low, block[2]);
+  turn(r[4].high, r[5].high, r[6].high, r[7].high, block[3]);
+#pragma GCC unroll 4
+  for (int i = 0; i < 4; ++i) {
+    r[i] = {block[0][i], block[2][i]};
+    r[i + 4] = {block[1][i], block[3][i]};
   }
 #else
   double rows[lanes][lanes], columns[lanes][lanes];

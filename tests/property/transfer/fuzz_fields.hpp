@@ -71,10 +71,11 @@ inline std::vector<double> coefficients_of(const PlanePolynomial& f, const Space
   return bernstein::from_lagrange<double>(p, values);
 }
 
-inline FieldCase field_case(std::uint64_t seed) {
+/// Fields on the donor of a pair of meshes, and what is asked for.
+inline FieldCase field_case(std::uint64_t seed, MeshPair meshes) {
   RandomStream random("field cases", seed);
   FieldCase out;
-  out.meshes = field_pair(seed);
+  out.meshes = std::move(meshes);
   const MeshPtr &donor = out.meshes.donor, &target = out.meshes.target;
   const int g = donor->degree(), h = target->degree();
   // Most cases go the shortest way, at least on some elements: one degree up to 3, no maps.
@@ -137,6 +138,10 @@ inline FieldCase field_case(std::uint64_t seed) {
     out.polynomials.push_back(std::move(f));
   }
   return out;
+}
+
+inline FieldCase field_case(std::uint64_t seed) {
+  return field_case(seed, field_pair(seed));
 }
 
 struct FieldVerdict {
