@@ -109,15 +109,19 @@ void ElementTransfer::give_strips(std::int32_t t, const ElementPieces& own, std:
       if (far == one_curve || far == near) continue;
       const auto& sides = target_.edge_sides[static_cast<std::size_t>(segment.target.edge)];
       if ((sides[0] != exterior ? sides[0] : sides[1]) != t) continue;
+      const bool thin = is_thin_donor(near) || is_thin_donor(far);
       const auto curve = target_.edge(segment.target.edge);
       const auto other = donor_.edge(segment.source.edge);
       const double step = segment.target.to - segment.target.from;
+      if (thin) begin_thin_strip(t, is_thin_donor(near) ? near : far, segment);
       std::fill(mass.begin(), mass.end(), 0.0);
       double area = 0.0;
       for (std::size_t q = 0; q < line.node.size(); ++q) {
         const auto [x, slope] = edge_point(curve, segment.target.from + step * line.node[q]);
         // Positive where T reaches beyond the donor's edge.
-        const double width = cross(slope, foot_point(other, x).point - x) * (step * line.weight[q]);
+        const double width =
+            thin ? thin_strip_width(line.node[q]) * line.weight[q]
+                 : cross(slope, foot_point(other, x).point - x) * (step * line.weight[q]);
         area += width;
         std::size_t c0 = 0;
         for (const Group& g : groups_) {
@@ -127,7 +131,8 @@ void ElementTransfer::give_strips(std::int32_t t, const ElementPieces& own, std:
             if (d == exterior) continue;
             std::array<double, 3> warm{};
             bool have_warm = false;
-            const auto at = detail::donor_place(g, donor_, d, x, warm, have_warm);
+            const auto at = thin ? thin_strip_place(g, d, line.node[q])
+                                 : detail::donor_place(g, donor_, d, x, warm, have_warm);
             evaluate_scaled(g.donor_space->degree(ElementId(d)), g.components,
                             g.donor_scaled(d).data(), at[0], at[1], values.data());
             for (std::size_t c = 0; c < nc; ++c)

@@ -10,6 +10,14 @@ namespace bezel::detail {
 /// Extra degree of exactness where an integrand is not a polynomial (a map inverted along a curve).
 inline constexpr int inexact_extra = 4;
 
+/// How large powers of barycentrics may be at points of a rule, in and around a region.
+inline constexpr double steepest_value = 256.0;
+
+/// Points along a curve that is pulled back by an inverse map.
+inline int pulled_points(int degree) {
+  return degree / 2 + 1 + inexact_extra / 2;
+}
+
 /// Donors smaller than this fraction of the target's area get their areas from rays of their own.
 inline constexpr double small_area = 1.0 / 64.0;
 
@@ -18,10 +26,14 @@ struct MapPoint {
   Vec2 x, du, dv;
   double det;
 };
-inline MapPoint map_point(const OverlayMesh& mesh, std::int32_t e, const std::array<double, 2>& q) {
+inline MapPoint map_point(int degree, std::span<const Vec2> control,
+                          const std::array<double, 2>& q) {
   const auto value = bernstein::kernel::evaluate_gradient_unchecked<Vec2, double>(
-      mesh.degree, mesh.element(e).data(), {1.0 - q[0] - q[1], q[0], q[1]});
+      degree, control.data(), {1.0 - q[0] - q[1], q[0], q[1]});
   return {value.value, value.du, value.dv, cross(value.du, value.dv)};
+}
+inline MapPoint map_point(const OverlayMesh& mesh, std::int32_t e, const std::array<double, 2>& q) {
+  return map_point(mesh.degree, mesh.element(e), q);
 }
 
 /// Calls visit(weight, q, x) at the points q of the fan of rays from `centre` to the reference

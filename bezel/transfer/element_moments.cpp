@@ -90,15 +90,19 @@ const ElementTransfer::RegionShape& ElementTransfer::shape_of(std::span<const Se
   shape.relative = centre;
   shape.centre = element_.origin + centre;
   shape.gap = element_.loose ? bridge_joints(shape) : norm(sum);
+  for (Vec2& p : shape.control) p -= centre;
+  shape.area = 0.5 * twice_piece_area(shape);
+  return shape;
+}
+
+double ElementTransfer::twice_piece_area(const RegionShape& shape) {
   double twice = 0.0;
-  Vec2* p = shape.control.data();
+  const Vec2* p = shape.control.data();
   for (const int degree : shape.degree) {
-    for (int i = 0; i <= degree; ++i) p[i] -= centre;
     twice += degree == 1 ? cross(p[0], p[1]) : twice_area(p, degree, area_weights(degree));
     p += degree + 1;
   }
-  shape.area = 0.5 * twice;
-  return shape;
+  return twice;
 }
 
 bool ElementTransfer::by_moments(const Group& g, std::int32_t t, std::int32_t d) {
@@ -157,9 +161,15 @@ bool ElementTransfer::add_pair_moments(const Group& g, std::int32_t t, std::int3
 }
 
 void ElementTransfer::add_apart(std::size_t i, std::int32_t t, std::int32_t d,
-                                std::span<const Segment> run, double area, std::span<double> mass) {
+                                std::span<const Segment> run, double area, bool thin,
+                                std::span<double> mass) {
   const Group& g = groups_[i];
   GroupState& own = element_.groups[i];
+  if (thin) {
+    begin_sums(i);
+    add_thin_pair(g, t, d, run, area, own, mass);
+    return;
+  }
   const RegionShape& shape = shape_of(run);
   if (add_pair_moments(g, t, d, shape, own, mass)) return;
   begin_sums(i);
@@ -221,8 +231,16 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
                                     ElementOutcome& outcome) {
   Refilled<RegionState>& regions = element_.regions;
   regions.resize(own.donors.size());
+  find_thin_regions(t, own);
   const auto note = [&](std::size_t k) {
     const std::int32_t d = own.donors[k];
+    if (regions[k].thin) {
+      const RegionShape& shape = thin_shape(t, d, run_of(own, k), false);
+      regions[k].area = shape.area;
+      regions[k].bridged = true;
+      note_thin_region(t, d, shape, outcome);
+      return;
+    }
     const RegionShape* shape = &shape_of(run_of(own, k));
     if (!element_.loose && !is_closed(t, d, shape->gap)) {
       element_.loose = true;
@@ -254,6 +272,10 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
   const double own_area = target_.element_area[static_cast<std::size_t>(t)];
   const double own_size = target_.element_diameter[static_cast<std::size_t>(t)];
   for (std::size_t k = 0; k < own.donors.size(); ++k) {
+    if (regions[k].thin) {
+      note(k);
+      continue;
+    }
     const std::int32_t d = own.donors[k];
     const double* sums = batch_.region(k);
     const double* step = sums + batch_.open;
@@ -332,7 +354,8 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
   for (std::size_t k = 0; k < count; ++k) {
     const RegionState& region = element_.regions[k];
     if (!regions[k].far && (!region.bridged || own.donors[k] == exterior)) continue;
-    add_apart(i, t, own.donors[k], run_of(own, k), region.area, mass.subspan(k * nc, nc));
+    add_apart(i, t, own.donors[k], run_of(own, k), region.area, region.thin,
+              mass.subspan(k * nc, nc));
   }
 }
 

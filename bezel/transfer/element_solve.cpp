@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "bezel/base/error.hpp"
 #include "bezel/bernstein/triangle_kernel.hpp"
+#include "bezel/field/element_kernel.hpp"
 #include "bezel/transfer/accumulate.hpp"
 #include "bezel/transfer/element_kernel.hpp"
 
@@ -107,13 +109,17 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
     reference_factor_.integrals.assign(n, area / static_cast<double>(n));
     return reference_factor_;
   }
-  if (moment_factor(g, t, whole)) return f;
+  // A thin element in the plane of the files is integrated where it is round.
+  std::optional<RoundControl> round;
+  if (target_.rounding == 0.0 && is_flat(target_, t)) round.emplace(target_.element(t));
+  const std::span<const Vec2> control = round ? round->points() : target_.element(t);
+  if (!round && moment_factor(g, t, whole)) return f;
   f.scale = 1.0;
   if (g.target_mapped && gd + p <= max_mapped_mass) {
     const MappedMass& mass = mapped_mass(p);
     f.lower.resize(n * n);
     f.integrals.resize(n);
-    mass.compute(target_.element(t), f.lower, f.integrals);
+    mass.compute(control, f.lower, f.integrals);
     if (factorize(n, f)) return f;
   }
   const int degree = g.target_mapped ? 2 * p + 2 * (gd - 1) : 2 * p * gd + 2 * (gd - 1);
@@ -126,11 +132,17 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
     u[q] = points.place[q][0];
     v[q] = points.place[q][1];
   }
-  fit_map(MapPolynomial(gd, target_.element(t)), padded / lanes, u, v, x, y, det);
+  fit_map(MapPolynomial(gd, control), padded / lanes, u, v, x, y, det);
+  Frame frame;
+  if (!g.target_mapped) {
+    frame = g.target_frame[static_cast<std::size_t>(t)];
+    if (round) frame = field_detail::moved(round->map(), frame);
+  }
   for (std::size_t q = 0; q < count; ++q) {
     w[q] = points.weight[q] * det[q];
     if (g.target_mapped) continue;
-    const auto place = target_place(g, t, Vec2{{x[q], y[q]}});
+    const auto lambda = frame.lambda({{x[q], y[q]}});
+    const std::array<double, 2> place{lambda[1], lambda[2]};
     u[q] = place[0];
     v[q] = place[1];
   }

@@ -20,6 +20,7 @@ constexpr std::uint64_t timed_batches = 8;
 bool ElementTransfer::may_be_ordinary(std::int32_t t, const ElementPieces& own,
                                       std::size_t first_region) {
   if (own.loose() || own.donors.empty() || keep_masses_of_.empty()) return false;
+  if (has_thin_donor(own) || is_flat(target_, t)) return false;
   for (const Group& g : groups_)
     if (g.in_other_frame(t)) return false;
   const double least = small_area * target_.element_area[static_cast<std::size_t>(t)];

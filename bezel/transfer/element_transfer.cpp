@@ -12,9 +12,6 @@
 namespace bezel::detail {
 namespace {
 
-/// How large powers of barycentrics may be at points of a rule, in and around a region.
-constexpr double steepest_value = 256.0;
-
 constexpr std::uint64_t timed_elements = 16;
 
 double signed_step(const Part& part) {
@@ -36,11 +33,13 @@ ElementTransfer::ElementTransfer(const OverlayMesh& donor, const OverlayMesh& ta
       element_(groups.size()),
       no_element_(groups.size()),
       group_batches_(groups.size()),
-      fit_(donor, target, groups.size()) {
+      fit_(donor, target, groups.size()),
+      thin_(donor, target) {
   for (std::size_t i = 0; i < groups.size(); ++i) {
     batched_[i] = can_batch(groups[i]) ? 1 : 0;
     fitted_[i] = batched_[i] == 0 && PairFit::can(groups[i], donor, target) ? 1 : 0;
   }
+  find_thin_donors();
   const bool all_batched = std::find(batched_.begin(), batched_.end(), 0) == batched_.end();
   some_together_ = all_batched && !groups.empty() && donor.degree == target.degree &&
                    target.degree <= max_batch_degree;
@@ -64,6 +63,14 @@ void ElementTransfer::reserve_points(std::size_t more) {
   const std::size_t needed = count_ + more + lanes;
   if (w_.size() >= needed) return;
   for (std::vector<double>* array : {&w_, &tu_, &tv_, &du_, &dv_}) array->resize(2 * needed);
+}
+
+void ElementTransfer::drop_points(std::size_t first, std::size_t last) {
+  for (std::vector<double>* array : {&w_, &tu_, &tv_, &du_, &dv_})
+    std::copy(array->begin() + static_cast<std::ptrdiff_t>(last),
+              array->begin() + static_cast<std::ptrdiff_t>(count_),
+              array->begin() + static_cast<std::ptrdiff_t>(first));
+  count_ -= last - first;
 }
 
 void ElementTransfer::flush(const Group& g, std::int32_t d, int target_degree,
@@ -119,37 +126,18 @@ void ElementTransfer::boundary_nodes(const RegionShape& shape, int degree) {
 // there; along other curves the map is inverted point by point.
 void ElementTransfer::reference_nodes(const OverlayMesh& mesh, std::int32_t element,
                                       const RegionShape& shape, bool source, int degree) {
-  static constexpr std::array<std::array<double, 2>, 3> corner = {
-      {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}};
   nodes_.clear();
-  const auto& sides = mesh.element_edges[static_cast<std::size_t>(element)];
   for (const Segment& segment : shape.run) {
     const Part& own = source ? segment.source : segment.target;
     if (own.edge >= 0) {
-      std::size_t side = 0;
-      while (side < 2 && sides[side].edge.value != own.edge) ++side;
-      const bool reversed = sides[side].reversed;
-      const auto& a = corner[side];
-      const auto& b = corner[(side + 1) % 3];
-      const double step = signed_step(own) * (reversed ? -1.0 : 1.0);
-      const IntervalRule& line = rule(degree / 2 + 1);
-      for (std::size_t i = 0; i < line.node.size(); ++i) {
-        const double t = own.from + signed_step(own) * line.node[i];
-        const double m = reversed ? 1.0 - t : t;
-        Node node;
-        for (std::size_t k = 0; k < 2; ++k) {
-          node.q[k] = a[k] + m * (b[k] - a[k]);
-          node.dq[k] = (b[k] - a[k]) * step * line.weight[i];
-        }
-        nodes_.push_back(node);
-      }
+      own_side_nodes(mesh, element, own, degree);
       continue;
     }
     const Part& part = source ? segment.target : segment.source;
     const OverlayMesh& other = source ? target_ : donor_;
     const auto control = other.edge(part.edge);
     const double step = signed_step(part);
-    const IntervalRule& line = rule(degree / 2 + 1 + inexact_extra / 2);
+    const IntervalRule& line = rule(pulled_points(degree));
     std::array<double, 3> lambda{};
     bool warm = false;
     for (std::size_t i = 0; i < line.node.size(); ++i) {
@@ -174,6 +162,30 @@ void ElementTransfer::reference_nodes(const OverlayMesh& mesh, std::int32_t elem
     node.q = {lambda[1], lambda[2]};
     const MapPoint map = map_point(mesh, element, node.q);
     node.dq = {cross(node.dx, map.dv) / map.det, cross(map.du, node.dx) / map.det};
+    nodes_.push_back(node);
+  }
+}
+
+void ElementTransfer::own_side_nodes(const OverlayMesh& mesh, std::int32_t element, const Part& own,
+                                     int degree) {
+  static constexpr std::array<std::array<double, 2>, 3> corner = {
+      {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}};
+  const auto& sides = mesh.element_edges[static_cast<std::size_t>(element)];
+  std::size_t side = 0;
+  while (side < 2 && sides[side].edge.value != own.edge) ++side;
+  const bool reversed = sides[side].reversed;
+  const auto& a = corner[side];
+  const auto& b = corner[(side + 1) % 3];
+  const double step = signed_step(own) * (reversed ? -1.0 : 1.0);
+  const IntervalRule& line = rule(degree / 2 + 1);
+  for (std::size_t i = 0; i < line.node.size(); ++i) {
+    const double t = own.from + signed_step(own) * line.node[i];
+    const double m = reversed ? 1.0 - t : t;
+    Node node;
+    for (std::size_t k = 0; k < 2; ++k) {
+      node.q[k] = a[k] + m * (b[k] - a[k]);
+      node.dq[k] = (b[k] - a[k]) * step * line.weight[i];
+    }
     nodes_.push_back(node);
   }
 }
@@ -492,12 +504,14 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
         }
         add_extension(g, t, shape, area, state, here, outcome.extension);
         for (std::size_t c = 0; c < nc; ++c) made[c0 + c] += here[c];
+      } else if (element_.regions[k].thin) {
+        if (!batched) add_thin_pair(g, t, d, run_of(own, k), area, state, here);
       } else if (!batched) {
         if (fits && fit_.add(d, run_begin(k), element_.run_end[k], area, here)) {
           if (blocks != nullptr) fit_.take(state.sums.product.data(), state.sums.basis.data());
         } else if (blocks == nullptr && by_moments(g, t, d)) {
           begin_moments(i);
-          add_apart(i, t, d, run_of(own, k), area, here);
+          add_apart(i, t, d, run_of(own, k), area, false, here);
         } else {
           const RegionShape& shape = shape_of(run_of(own, k));
           if (fitted && g.donor_mapped) {

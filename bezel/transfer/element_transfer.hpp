@@ -21,6 +21,7 @@
 #include "bezel/transfer/overlay.hpp"
 #include "bezel/transfer/pair_fit.hpp"
 #include "bezel/transfer/piece_batch.hpp"
+#include "bezel/transfer/thin_region.hpp"
 #include "bezel/transfer/transfer.hpp"
 
 namespace bezel::detail {
@@ -138,6 +139,7 @@ class ElementTransfer {
     double area = 0;
     std::int32_t mass_row = -1;  ///< of the list of masses
     bool bridged = false;
+    bool thin = false;  ///< goes by thin_shape() and add_thin_pair()
   };
   /// One group of fields on the element.
   struct GroupState {
@@ -182,6 +184,8 @@ class ElementTransfer {
   void boundary_nodes(const RegionShape& shape, int degree);
   /// Valid until the next call.
   const RegionShape& shape_of(std::span<const Segment> run);
+  /// Of the pieces about where they are taken from.
+  static double twice_piece_area(const RegionShape& shape);
   double bridge_joints(RegionShape& shape);
   /// Starts and steps of bridges in the plane.
   std::span<const std::array<Vec2, 2>> plane_bridges(const RegionShape& shape);
@@ -206,6 +210,35 @@ class ElementTransfer {
   void give_strips(std::int32_t t, const ElementPieces& own, std::size_t components,
                    GivenList& given, std::span<double> made, ElementBlocks* blocks);
   double largest_partition_residual(std::int32_t t) const;
+  // Thin elements that cross (element_thin.cpp).
+  void find_thin_donors();
+  bool is_thin_donor(std::int32_t d) const {
+    return d != exterior && !thin_donor_.empty() && thin_donor_[static_cast<std::size_t>(d)] != 0;
+  }
+  bool has_thin_donor(const ElementPieces& own) const;
+  /// The strip between both parts of a segment, about as give_strips() has it.
+  void begin_thin_strip(std::int32_t t, std::int32_t d, const Segment& segment);
+  double thin_strip_width(double s) const;
+  /// Where its point on the target's part lies in a donor.
+  std::array<double, 2> thin_strip_place(const Group& g, std::int32_t d, double s);
+  LinearPlace thin_linear_place(const Group& g, std::int32_t d) const;
+  void find_thin_regions(std::int32_t t, const ElementPieces& own);
+  /// As shape_of(), from the centre of thin_ and in its plane.
+  const RegionShape& thin_shape(std::int32_t t, std::int32_t d, std::span<const Segment> run,
+                                bool donors_plane);
+  void note_thin_region(std::int32_t t, std::int32_t d, const RegionShape& shape,
+                        ElementOutcome& outcome) const;
+  void thin_nodes(int degree);
+  /// Calls visit(weight, x) at the points of a rule that is exact for the given degree in the
+  /// plane.
+  template <class Visit>
+  void thin_fan(int degree, const Visit& visit);
+  /// `points` on each piece of a target edge.
+  void thin_reference_nodes(std::int32_t d, std::span<const Segment> run, int degree, int points);
+  template <class Visit>
+  void thin_reference_fan(const std::array<double, 2>& centre, int degree, const Visit& visit);
+  void add_thin_pair(const Group& g, std::int32_t t, std::int32_t d, std::span<const Segment> run,
+                     double area, GroupState& own, std::span<double> mass);
   // By moments (element_moments.cpp).
   static bool by_moments(const Group& g, std::int32_t t, std::int32_t d);
   const PieceTable& piece_table(int degree, int moments);
@@ -213,7 +246,7 @@ class ElementTransfer {
                         GroupState& own, std::span<double> mass);
   /// By moments about the region's own centre, or by quadrature.
   void add_apart(std::size_t i, std::int32_t t, std::int32_t d, std::span<const Segment> run,
-                 double area, std::span<double> mass);
+                 double area, bool thin, std::span<double> mass);
   void moments_to_powers(std::size_t i, std::int32_t t);
   /// Sets moments_ to those of target element t in its coordinates.
   void element_moments(const Group& g, std::int32_t t, int degree);
@@ -283,6 +316,8 @@ class ElementTransfer {
   const Factor& factor(const Group& g, std::int32_t t, std::span<const double> whole);
   /// Makes room for `more` points in the arrays.
   void reserve_points(std::size_t more);
+  /// Takes the points from number `first` to `last` out.
+  void drop_points(std::size_t first, std::size_t last);
   void push(double w, double tu, double tv, double du, double dv) {
     const std::size_t i = count_++;
     w_[i] = w;
@@ -299,6 +334,8 @@ class ElementTransfer {
                                     std::array<double, 3>& warm, bool& have_warm) const;
   void reference_nodes(const OverlayMesh& mesh, std::int32_t element, const RegionShape& shape,
                        bool source, int degree);
+  /// Nodes along a part of an element's own side, which is straight in the reference triangle.
+  void own_side_nodes(const OverlayMesh& mesh, std::int32_t element, const Part& own, int degree);
   std::array<double, 2> reference_centre() const;  // mean of the reference nodes
   template <class Visit>
   void reference_fan(const OverlayMesh& mesh, std::int32_t element,
@@ -323,6 +360,9 @@ class ElementTransfer {
   std::vector<GroupBatch> group_batches_;
   PieceBatch batch_;  // of the element's pieces
   PairFit fit_;
+  std::vector<std::uint8_t> thin_donor_;  // by donor element; empty: none is thin
+  ThinRegion thin_;                       // of the region at work, and elements brought there
+  MappedElement thin_donor_map_, thin_target_map_;
 
   // Tables.
   std::vector<IntervalRule> rules_;

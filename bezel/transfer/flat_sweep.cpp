@@ -4,20 +4,13 @@
 #include <cmath>
 
 #include "bezel/transfer/extension.hpp"
+#include "bezel/transfer/thin_region.hpp"
 
 namespace bezel::detail {
 namespace {
 
-/// Diameter over width from which an element is thin: so many roundings are lost in it.
-constexpr double flat = 256.0;
 /// Elements share a plane in cells of this many of their lengths and widths.
 constexpr double cell = 4.0;
-
-bool is_flat(const OverlayMesh& mesh, std::int32_t e) {
-  const auto i = static_cast<std::size_t>(e);
-  const double diameter = mesh.element_diameter[i];
-  return diameter * diameter > flat * 2.0 * mesh.element_area[i];
-}
 
 /// A plane in which an element is round. It depends on the element alone, and elements near each
 /// other, of about the same direction and shape, have the same: slopes are rounded as far as

@@ -69,6 +69,9 @@ struct Group {
   /// Affine triangles on which the target's polynomials are computed: straight elements themselves,
   /// else the space's own frames.
   std::span<const Frame> target_frame;
+  /// Of meshes moved to another plane: the frames of physical bases in the plane that they came
+  /// from; else empty.
+  std::vector<Frame> given_donor_frame, given_target_frame;
   std::vector<double> donor_mass;  ///< per element [component]
   /// Of groups of fields: what is known of the donor space, and of the fields (but for the
   /// integrals, which are donor_mass).
@@ -79,6 +82,15 @@ struct Group {
   Numbers powers;
   std::vector<double> out;  ///< target coefficients, per element [n][component]
 
+  /// Frames of donors and targets that are not mapped, in the plane that the meshes came from.
+  const Frame& given_frame_of_donor(std::int32_t e) const {
+    return (given_donor_frame.empty() ? donor_frame
+                                      : given_donor_frame)[static_cast<std::size_t>(e)];
+  }
+  const Frame& given_frame_of_target(std::int32_t e) const {
+    return (given_target_frame.empty() ? target_frame
+                                       : given_target_frame)[static_cast<std::size_t>(e)];
+  }
   /// Whether the components are the donor's basis functions.
   bool of_basis() const { return !scaled_offset_.empty(); }
   ScaledCoefficients donor_scaled(std::int32_t e) const;

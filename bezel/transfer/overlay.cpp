@@ -10,6 +10,7 @@
 #include "bezel/geometry/quick_crossing.hpp"
 #include "bezel/geometry/quick_ends.hpp"
 #include "bezel/numeric/box.hpp"
+#include "bezel/transfer/thin_region.hpp"
 
 namespace bezel::detail {
 
@@ -138,6 +139,13 @@ bool ElementOverlay::inside_target(std::int32_t t, std::span<const Vec2> curve, 
   return answer;
 }
 
+bool ElementOverlay::are_apart(std::int32_t donor_edge, double gap, double magnitude) const {
+  if (gap > point_rounding * magnitude) return true;
+  const auto& sides = donor_.edge_sides[static_cast<std::size_t>(donor_edge)];
+  return std::any_of(sides.begin(), sides.end(),
+                     [&](std::int32_t d) { return d != exterior && is_flat(donor_, d); });
+}
+
 bool ElementOverlay::meet_ordinarily(const CurveCache& curve, const CurveCache& other,
                                      double distance, std::int32_t donor_edge, Record& record) {
   QuickCrossing crossing{};
@@ -163,7 +171,7 @@ bool ElementOverlay::meet_ordinarily(const CurveCache& curve, const CurveCache& 
     case EndMeeting::part:
       coincidences_.push_back(
           {ends.s, ends.s_end, ends.t, ends.t_end, donor_edge,
-           ends.gap > point_rounding * std::max(curve.magnitude, other.magnitude)});
+           are_apart(donor_edge, ends.gap, std::max(curve.magnitude, other.magnitude))});
       ++details_of(record).overlaps;
       return true;
     case EndMeeting::unclear:
@@ -221,7 +229,7 @@ void ElementOverlay::overlay_edge(Record& record) {
     }
     for (const Overlap& c : found_.overlaps) {
       coincidences_.push_back({c.s0, c.s1, opposite(c.s0, c.t0), opposite(c.s1, c.t1), e,
-                               c.gap > point_rounding * std::max(own.magnitude, facing.magnitude)});
+                               are_apart(e, c.gap, std::max(own.magnitude, facing.magnitude))});
       ++details.overlaps;
     }
     for (const UnresolvedBox& c : found_.unresolved) {

@@ -219,6 +219,9 @@ class ElementOverlay {
   }
   void find_candidates(std::int32_t t);
   void overlay_edge(Record& record);
+  /// Whether what lies between coincident edges counts: more than the rounding of points does, and
+  /// beside thin donors all.
+  bool are_apart(std::int32_t donor_edge, double gap, double magnitude) const;
   /// Puts what two edges have in common on the lists, when that is quickly seen.
   bool meet_ordinarily(const CurveCache& curve, const CurveCache& other, double distance,
                        std::int32_t donor_edge, Record& record);

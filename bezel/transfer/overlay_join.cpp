@@ -163,8 +163,7 @@ bool ElementOverlay::follow_edges(Record& record) {
     if (end - r < contact_isolation || !run_together(own, r, end, other, s, s_end, tau, gap))
       return false;
     coincidences_.push_back(
-        {r, end, s, s_end, e,
-         gap > point_rounding * std::max(curve.magnitude, other_cache.magnitude)});
+        {r, end, s, s_end, e, are_apart(e, gap, std::max(curve.magnitude, other_cache.magnitude))});
     return true;
   };
   double r = 0.0, end = 0.0;

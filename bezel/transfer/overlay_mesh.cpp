@@ -9,6 +9,7 @@
 #include "bezel/geometry/triangle.hpp"
 #include "bezel/mesh/morton.hpp"
 #include "bezel/transfer/group.hpp"
+#include "bezel/transfer/thin_region.hpp"
 
 namespace bezel::detail {
 namespace {
@@ -362,12 +363,18 @@ bool invert_map(int degree, std::span<const Vec2> control, const Vec2& p,
 }
 
 double inside_margin(const OverlayMesh& mesh, std::int32_t element, const Vec2& p) {
+  constexpr double outside = -std::numeric_limits<double>::infinity();
+  if (!mesh.element_box[static_cast<std::size_t>(element)].contains(p)) return outside;
   std::array<double, 3> lambda{};
-  if (!mesh.element_box[static_cast<std::size_t>(element)].contains(p) ||
-      !invert_map(mesh.degree, mesh.element(element), p, lambda, false)) {
-    return -std::numeric_limits<double>::infinity();
+  bool found = false;
+  if (is_flat(mesh, element)) {
+    // Where it is round none of the three is blurred by the rounding of another.
+    const RoundControl round(mesh.element(element));
+    found = invert_map(mesh.degree, round.points(), round.map()(p), lambda, false);
+  } else {
+    found = invert_map(mesh.degree, mesh.element(element), p, lambda, false);
   }
-  return std::min({lambda[0], lambda[1], lambda[2]});
+  return found ? std::min({lambda[0], lambda[1], lambda[2]}) : outside;
 }
 
 }  // namespace bezel::detail

@@ -42,10 +42,15 @@ struct OverlayMesh {
   /// Of a mesh that was moved to another plane (flat_sweep.hpp): by how much the rounding of the
   /// coordinates that it came with moves points here. Else 0.
   double rounding = 0;
+  /// ... and its nodes in the plane that it came from; else empty.
+  std::vector<Vec2> given_control;
   std::vector<std::int32_t> numbers;  ///< of a part of a mesh: the elements' numbers in the whole
 
   std::int32_t number_of(std::int32_t e) const {
     return numbers.empty() ? e : numbers[static_cast<std::size_t>(e)];
+  }
+  const Vec2& given(NodeId n) const {
+    return given_control.empty() ? mesh->control(n) : given_control[n.index()];
   }
   std::size_t element_count() const { return element_box.size(); }
   std::size_t edge_count() const { return edge_sides.size(); }

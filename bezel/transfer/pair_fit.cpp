@@ -410,6 +410,10 @@ bool PairFit::add(std::int32_t d, std::size_t begin, std::size_t end, double are
   return true;
 }
 
+int PairFit::mass_points(int degree) {
+  return degree / 2 + 1 + pulled_extra;
+}
+
 void PairFit::mass_of(std::int32_t d, std::size_t begin, std::size_t end, double area,
                       std::span<const std::array<Vec2, 2>> bridges, std::span<double> mass) {
   donor_mass(donor_of(d), begin, end, area, bridges, mass);
@@ -420,7 +424,7 @@ void PairFit::mass_of(std::int32_t d, std::size_t begin, std::size_t end, double
 void PairFit::donor_mass(const Donor& donor, std::size_t begin, std::size_t end, double area,
                          std::span<const std::array<Vec2, 2>> bridges, std::span<double> mass) {
   const int degree = mass_degree(donor_, g_->donor_space->degree(ElementId(donor.element)));
-  const int pulled = degree / 2 + 1 + pulled_extra;
+  const int pulled = mass_points(degree);
   boundary_.clear();
   for (std::size_t i = begin; i < end; ++i) {
     const Segment& segment = segments_[i];

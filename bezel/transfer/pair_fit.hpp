@@ -37,6 +37,9 @@ class PairFit {
   /// starts and steps in the plane.
   void mass_of(std::int32_t d, std::size_t begin, std::size_t end, double area,
                std::span<const std::array<Vec2, 2>> bridges, std::span<double> mass);
+  /// Points on a piece of a target edge by which masses of that degree in the donor's coordinates
+  /// are integrated.
+  static int mass_points(int degree);
   /// Adds what the pairs since the last call gave: integrals with the powers l0^i l1^j l2^k of the
   /// target's barycentrics, product[n * components + c] of the fields less the constants, and
   /// basis[n].

@@ -42,23 +42,26 @@ void write_mesh(const TriangleMesh& mesh, std::span<const std::int32_t> elements
   note_places(nodes, places);
   for (std::int32_t& n : connectivity) n = places[place(n)];
   forget_places(nodes, places);
-  std::vector<Vec2> control;
+  std::vector<Vec2> control, given;
   control.reserve(nodes.size());
   double largest = 0.0;
   for (const std::int32_t n : nodes) {
     const Vec2& p = mesh.control(NodeId(n));
     largest = std::max({largest, std::abs(p.x()), std::abs(p.y())});
     control.push_back(map(p));
+    if (!map.identity) given.push_back(p);
   }
   out.value(mesh.degree());
   out.value(map.rounding(largest));
   out.list(control);
+  out.list(given);
   out.list(connectivity);
   out.list(elements);
 }
 
 struct MeshPart {
   double rounding;
+  std::vector<Vec2> given_control;
   std::shared_ptr<const TriangleMesh> mesh;
   std::vector<std::int32_t> numbers;
 };
@@ -67,9 +70,11 @@ MeshPart read_mesh(MessageReader& in) {
   const int degree = in.value<int>();
   const auto rounding = in.value<double>();
   std::vector<Vec2> control = in.list<Vec2>();
+  std::vector<Vec2> given_control = in.list<Vec2>();
   std::vector<NodeId> nodes;
   for (const std::int32_t n : in.list<std::int32_t>()) nodes.emplace_back(n);
   MeshPart part;
+  part.given_control = std::move(given_control);
   part.rounding = rounding;
   part.mesh = std::make_shared<const TriangleMesh>(degree, std::move(control), std::move(nodes));
   part.numbers = in.list<std::int32_t>();
@@ -97,6 +102,15 @@ std::vector<Frame> frames_in(const AreaMap& map, const Space& space, const Overl
   return frames;
 }
 
+/// The frames of a physical basis as they are, where frames_in() moves them.
+std::vector<Frame> given_frames(const AreaMap& map, const Space& space,
+                                std::span<const std::int32_t> elements) {
+  std::vector<Frame> frames;
+  if (map.identity || space.basis() != Basis::physical) return frames;
+  for (const std::int32_t e : elements) frames.push_back(space.frame(ElementId(e)));
+  return frames;
+}
+
 void write_group(const Share& share, const Group& g, const OverlayMesh& donor_mesh,
                  const OverlayMesh& target_mesh, const AreaMap& map, MessageWriter& out) {
   const Space& donor = *g.donor_space;
@@ -112,6 +126,8 @@ void write_group(const Share& share, const Group& g, const OverlayMesh& donor_me
   out.list(map.identity ? std::vector<Frame>()
                         : frames_in(map, *g.target_space, target_mesh, share.targets));
   out.value(g.target_space->uniform_degree());
+  out.list(given_frames(map, donor, share.donors));
+  out.list(given_frames(map, *g.target_space, share.targets));
   if (g.of_basis()) return;
   const auto nc = static_cast<std::size_t>(g.components);
   std::vector<double> scaled;
@@ -146,14 +162,20 @@ Group read_group(const OverlayMesh& donor, const OverlayMesh& target, int thread
           : Space::discontinuous(target.mesh,
                                  std::vector<int>(target.element_count(), target_degree),
                                  std::move(target_frames));
+  std::vector<Frame> given_donor = in.list<Frame>(), given_target = in.list<Frame>();
+  const auto with_given = [&](Group g) {
+    g.given_donor_frame = std::move(given_donor);
+    g.given_target_frame = std::move(given_target);
+    return g;
+  };
   if (of_basis) {
-    return Group(donor, target, std::move(donor_space), std::move(target_space), donor_degree,
-                 threads);
+    return with_given(Group(donor, target, std::move(donor_space), std::move(target_space),
+                            donor_degree, threads));
   }
   const std::vector<double> scaled = in.list<double>();
   std::vector<double> mass = in.list<double>();
-  return Group(donor, target, std::move(donor_space), std::move(target_space), components,
-               donor_degree, scaled, std::move(mass), threads);
+  return with_given(Group(donor, target, std::move(donor_space), std::move(target_space),
+                          components, donor_degree, scaled, std::move(mass), threads));
 }
 
 /// Elements of a part by their numbers in the whole.
@@ -310,9 +332,11 @@ ShareReport work_on(MessageReader& in, int threads, MessageWriter& out) {
   OverlayMesh donor(std::move(donor_part.mesh), "donor", threads);
   donor.numbers = std::move(donor_part.numbers);
   donor.rounding = donor_part.rounding;
+  donor.given_control = std::move(donor_part.given_control);
   OverlayMesh target(std::move(target_part.mesh), "target", threads);
   target.numbers = std::move(target_part.numbers);
   target.rounding = target_part.rounding;
+  target.given_control = std::move(target_part.given_control);
   for (std::uint64_t i = 0; i < group_count; ++i)
     groups.push_back(read_group(donor, target, threads, in));
   const FrontSearch search(donor, connected);

@@ -1,0 +1,193 @@
+#include "bezel/transfer/thin_region.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bezel/numeric/box.hpp"
+#include "bezel/numeric/eft.hpp"
+
+namespace bezel::detail {
+namespace {
+
+DoubleDouble difference(double a, double b) {
+  const WithError d = two_sum(a, -b);
+  return {d.value, d.error};
+}
+
+/// By a power of two.
+DoubleDouble scaled(const DoubleDouble& a, double by) {
+  return {a.hi * by, a.lo * by};
+}
+
+double rounded(const DoubleDouble& a) {
+  return static_cast<double>(a);
+}
+
+std::vector<Vec2> given_element(const OverlayMesh& mesh, std::int32_t e) {
+  std::vector<Vec2> control;
+  for (const NodeId n : mesh.mesh->nodes(ElementId(e))) control.push_back(mesh.given(n));
+  return control;
+}
+
+/// Area over the square of the diameter.
+double roundness(const OverlayMesh& mesh, std::int32_t e) {
+  const double diameter = given_diameter(mesh, e);
+  return mesh.element_area[static_cast<std::size_t>(e)] / (diameter * diameter);
+}
+
+}  // namespace
+
+double given_diameter(const OverlayMesh& mesh, std::int32_t e) {
+  if (mesh.given_control.empty()) return mesh.element_diameter[static_cast<std::size_t>(e)];
+  Box2 box;
+  for (const NodeId n : mesh.mesh->nodes(ElementId(e))) box.include(mesh.given(n));
+  return box.diameter();
+}
+
+double largest_given_coordinate(const OverlayMesh& mesh, std::int32_t e) {
+  double largest = 0.0;
+  for (const NodeId n : mesh.mesh->nodes(ElementId(e))) {
+    const Vec2& p = mesh.given(n);
+    largest = std::max({largest, std::abs(p.x()), std::abs(p.y())});
+  }
+  return largest;
+}
+
+bool is_flat_as_given(const OverlayMesh& mesh, std::int32_t e) {
+  return roundness(mesh, e) * (flat * 2.0) < 1.0;
+}
+
+ThinRegion::Exact ThinRegion::from_centre(const Vec2& p) const {
+  return {difference(p.x(), centre_.x()), difference(p.y(), centre_.y())};
+}
+
+ThinRegion::Exact ThinRegion::moved(const AreaMap& map, const Exact& p) {
+  if (map.identity) return p;
+  const DoubleDouble u = map.turned ? p.y : p.x, v = map.turned ? -p.x : p.y;
+  return {scaled(u, 1.0 / map.stretch), scaled(v - DoubleDouble(map.slope) * u, map.stretch)};
+}
+
+ThinRegion::Exact ThinRegion::mix(const Exact& a, const Exact& b, double s) {
+  const DoubleDouble t(s), rest = difference(1.0, s);
+  return {rest * a.x + t * b.x, rest * a.y + t * b.y};
+}
+
+void ThinRegion::begin(std::int32_t t, std::int32_t d, std::span<const Segment> run,
+                       bool donors_plane) {
+  centre_ = {};
+  for (const Segment& segment : run) {
+    const bool source = segment.target.edge < 0;
+    const Part& part = source ? segment.source : segment.target;
+    const OverlayMesh& mesh = source ? donor_ : target_;
+    given_.clear();
+    for (const NodeId n : mesh.mesh->edge_nodes(EdgeId(part.edge))) given_.push_back(mesh.given(n));
+    centre_ += curve_point(given_, part.from);
+  }
+  centre_ *= 1.0 / static_cast<double>(run.size());
+  const bool of_donor =
+      d != exterior && (donors_plane || roundness(donor_, d) < roundness(target_, t));
+  map_ = round_map(of_donor ? given_element(donor_, d) : given_element(target_, t));
+}
+
+// Control point i is the blossom at i times `to` and `from` else.
+void ThinRegion::append(const OverlayMesh& mesh, const Part& part, std::vector<Vec2>& out) {
+  exact_.clear();
+  for (const NodeId n : mesh.mesh->edge_nodes(EdgeId(part.edge)))
+    exact_.push_back(moved(map_, from_centre(mesh.given(n))));
+  const std::size_t count = exact_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    blossom_ = exact_;
+    for (std::size_t level = 1; level < count; ++level) {
+      const double s = level <= i ? part.to : part.from;
+      for (std::size_t k = 0; k + level < count; ++k)
+        blossom_[k] = mix(blossom_[k], blossom_[k + 1], s);
+    }
+    out.push_back({{rounded(blossom_[0].x), rounded(blossom_[0].y)}});
+  }
+}
+
+// Gradients move by the inverse transposed map.
+LinearPlace ThinRegion::place(const std::array<DoubleDouble, 2>& at,
+                              const std::array<Exact, 2>& gradient) const {
+  LinearPlace place{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    place.at[k] = rounded(at[k]);
+    const Exact& g = gradient[k];
+    if (map_.identity) {
+      place.gradient[k] = {{rounded(g.x), rounded(g.y)}};
+      continue;
+    }
+    const DoubleDouble u = map_.turned ? g.y : g.x, v = map_.turned ? -g.x : g.y;
+    place.gradient[k] = {
+        {rounded(u + DoubleDouble(map_.slope) * v) * map_.stretch, rounded(v) / map_.stretch}};
+  }
+  return place;
+}
+
+LinearPlace ThinRegion::place_in(const OverlayMesh& mesh, std::int32_t element) const {
+  const auto nodes = mesh.mesh->nodes(ElementId(element));
+  const auto g = static_cast<std::size_t>(mesh.degree);
+  const Exact p = from_centre(mesh.given(nodes[0])), p1 = from_centre(mesh.given(nodes[g])),
+              p2 = from_centre(mesh.given(nodes.back()));
+  const Exact a{p1.x - p.x, p1.y - p.y}, b{p2.x - p.x, p2.y - p.y};
+  const auto cross_of = [](const Exact& m, const Exact& n) { return m.x * n.y - m.y * n.x; };
+  const DoubleDouble det = cross_of(a, b);
+  return place({cross_of(b, p) / det, cross_of(p, a) / det},
+               {Exact{b.y / det, -b.x / det}, Exact{-a.y / det, a.x / det}});
+}
+
+LinearPlace ThinRegion::place_in(const Frame& frame) const {
+  const Exact offset{difference(centre_.x(), frame.centre.x()),
+                     difference(centre_.y(), frame.centre.y())};
+  std::array<DoubleDouble, 2> at;
+  std::array<Exact, 2> gradient;
+  for (std::size_t k = 0; k < 2; ++k) {
+    gradient[k] = {frame.gradient[k + 1].x(), frame.gradient[k + 1].y()};
+    at[k] = DoubleDouble(1.0 / 3.0) + gradient[k].x * offset.x + gradient[k].y * offset.y;
+  }
+  return place(at, gradient);
+}
+
+void ThinRegion::bring(const OverlayMesh& mesh, std::int32_t element, MappedElement& out) const {
+  const std::vector<Vec2> given = given_element(mesh, element);
+  out.map = round_map(given);
+  out.control.clear();
+  for (const Vec2& p : given) {
+    const Exact there = moved(out.map, from_centre(p));
+    out.control.push_back({{rounded(there.x), rounded(there.y)}});
+  }
+  for (int k = 0; k < 2; ++k) {
+    Exact unit{k == 0 ? 1.0 : 0.0, k == 0 ? 0.0 : 1.0};
+    if (!map_.identity) {
+      const DoubleDouble u = scaled(unit.x, map_.stretch);
+      const DoubleDouble v = scaled(unit.y, 1.0 / map_.stretch) + DoubleDouble(map_.slope) * u;
+      unit = map_.turned ? Exact{-v, u} : Exact{u, v};
+    }
+    const Exact image = moved(out.map, unit);
+    out.from_region[static_cast<std::size_t>(k)] = {{rounded(image.x), rounded(image.y)}};
+  }
+}
+
+Vec2 ThinRegion::as_given(const Vec2& step) const {
+  if (map_.identity) return step;
+  const double u = step.x() * map_.stretch, v = step.y() / map_.stretch + map_.slope * u;
+  return map_.turned ? Vec2{{-v, u}} : Vec2{{u, v}};
+}
+
+double ThinRegion::joint_width(const OverlayMesh& mesh, std::int32_t element,
+                               const Vec2& step) const {
+  const auto nodes = mesh.mesh->nodes(ElementId(element));
+  const std::array<Vec2, 3> corner{mesh.given(nodes[0]),
+                                   mesh.given(nodes[static_cast<std::size_t>(mesh.degree)]),
+                                   mesh.given(nodes.back())};
+  double largest = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec2& a = corner[k];
+    const Vec2& b = corner[(k + 1) % 3];
+    const Exact side = moved(map_, {difference(b.x(), a.x()), difference(b.y(), a.y())});
+    largest = std::max(largest, std::abs(cross(step, Vec2{{rounded(side.x), rounded(side.y)}})));
+  }
+  return largest / given_diameter(mesh, element);
+}
+
+}  // namespace bezel::detail
