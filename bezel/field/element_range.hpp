@@ -51,8 +51,8 @@ class ValueRanges {
                               double rel_tol = 1e-3) const;
 
   /// By which share of their width the coefficients' range must be widened to hold the values on
-  /// the element; negative where the element lies too far outside its frame.
-  double widening(std::size_t e) const { return widening_.empty() ? 0.0 : widening_[e]; }
+  /// each element; negative where the element lies too far outside its frame. Empty: by nothing.
+  std::span<const double> widenings() const { return widening_; }
 
  private:
   struct Candidate {
@@ -68,6 +68,7 @@ class ValueRanges {
     double roundoff = 0.0;      // not worth looking for
     std::vector<double> bound;  // by block
   };
+  double widening(std::size_t e) const { return widening_.empty() ? 0.0 : widening_[e]; }
   field_detail::Known bounds_on(const Field& field, int component, std::size_t e) const;
   /// An element whose bound is the largest.
   Candidate highest(const Search& search) const;

@@ -16,74 +16,90 @@ std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Values of several components: the compiler makes vectors of the loops.
-template <std::size_t width>
-using Pack = std::array<double, width>;
+/// As look_at_lanes(), for one component; the results stand in the first of the lanes.
+void look_at_one(std::size_t first, std::size_t elements, std::size_t size, const double* c,
+                 const double* basis, const double* share, LaneSurvey& found) {
+  bernstein::with_triangle_size(size, [&](auto fixed) {
+    const std::size_t count = fixed() > 0 ? fixed() : size;
+    double low = found.low[0], high = found.high[0], slack = found.slack[0];
+    for (std::size_t e = 0; e < elements; ++e, c += count) {
+      double least = c[0], most = c[0];
+      for (std::size_t n = 1; n < count; ++n) {
+        least = c[n] < least ? c[n] : least;
+        most = c[n] > most ? c[n] : most;
+      }
+      const std::size_t place = (first + e) * lanes;
+      found.least[place] = least;
+      found.most[place] = most;
+      if (basis != nullptr) {
+        double total = 0.0;
+        for (std::size_t n = 0; n < count; ++n) total += basis[e * count + n] * c[n];
+        found.integral[place] = total;
+      }
+      if (share != nullptr) {
+        const double wider = share[e] * (most - least);
+        slack = wider > slack ? wider : slack;
+        least -= wider;
+        most += wider;
+      }
+      low = least < low ? least : low;
+      high = most > high ? most : high;
+    }
+    found.low[0] = low;
+    found.high[0] = high;
+    found.slack[0] = slack;
+  });
+}
 
-/// Elements of `fixed` coefficients each, or as many as their degrees say when it is 0.
-template <std::size_t fixed, std::size_t width>
-void look_at(const Space& space, const SurveyAim& aim, const SurveyBlock& block, Survey& survey,
-             std::vector<double>& scratch) {
-  const std::size_t components = survey.bounds.components;
-  const bool integrate = !aim.basis_integrals.empty();
-  const double* basis =
-      integrate ? aim.basis_integrals.data() + space.offset(ElementId(block.from)) : nullptr;
+/// Elements of one degree at once.
+void look_at_elements(const Space& space, const SurveyAim& aim, const SurveyBlock& block,
+                      LaneSurvey& found) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (auto* array : {&found.integral, &found.least, &found.most})
+    array->resize(survey_block * lanes);
+  found.low.fill(infinity);
+  found.high.fill(-infinity);
+  found.slack.fill(0.0);
+  const double* const basis = aim.basis_integrals.empty() ? nullptr : aim.basis_integrals.data();
+  const double* const share = aim.ranges == nullptr || aim.ranges->widenings().empty()
+                                  ? nullptr
+                                  : aim.ranges->widenings().data();
   const double* c = block.c;
-  Pack<width> low, high, slack{};
-  for (std::size_t e = block.from; e < block.to; ++e) {
-    const std::size_t size =
-        fixed > 0 ? fixed : at(bernstein::triangle_size(space.degree(ElementId(e))));
-    Pack<width> total{};
-    if (integrate) {
-      for (std::size_t n = 0; n < size; ++n)
-        for (std::size_t k = 0; k < width; ++k) total[k] += basis[n] * c[n * width + k];
-      std::copy_n(total.begin(), block.count,
-                  survey.integrals.data() + e * components + block.first);
-      basis += size;
-    }
-    Pack<width> least, most;
-    for (std::size_t k = 0; k < width; ++k) least[k] = most[k] = c[k];
-    for (std::size_t n = 1; n < size; ++n) {
-      for (std::size_t k = 0; k < width; ++k) {
-        const double x = c[n * width + k];
-        least[k] = x < least[k] ? x : least[k];
-        most[k] = x > most[k] ? x : most[k];
-      }
-    }
-    if (aim.absolute != nullptr) {
-      double* const to = survey.absolute.data() + e * components + block.first;
-      for (std::size_t k = 0; k < block.count; ++k)
-        to[k] = (*aim.absolute)(e, c + k, width, least[k], most[k], total[k], scratch);
-    }
-    if (aim.ranges != nullptr) {
-      const double share = aim.ranges->widening(e);
-      if (share < 0.0) {  // bounded by itself, where it matters
-        least.fill(-std::numeric_limits<double>::infinity());
-        most.fill(std::numeric_limits<double>::infinity());
-      } else {
-        for (std::size_t k = 0; k < width; ++k) {
-          const double wider = share * (most[k] - least[k]);
-          slack[k] = wider > slack[k] ? wider : slack[k];
-          least[k] -= wider;
-          most[k] += wider;
-        }
-      }
-      if (e == block.from) {
-        low = least;
-        high = most;
-      }
-      for (std::size_t k = 0; k < width; ++k) {
-        low[k] = least[k] < low[k] ? least[k] : low[k];
-        high[k] = most[k] > high[k] ? most[k] : high[k];
-      }
-    }
-    c += size * width;
+  const std::size_t step = space.uniform_degree() >= 0 ? block.to - block.from : 1;
+  for (std::size_t e = block.from; e < block.to; e += step) {
+    const ElementId id(e);
+    const std::size_t size = at(bernstein::triangle_size(space.degree(id)));
+    const auto looking = block.width == 1 ? look_at_one : look_at_lanes;
+    looking(e - block.from, step, size, c, basis == nullptr ? nullptr : basis + space.offset(id),
+            share == nullptr ? nullptr : share + e, found);
+    c += step * size * block.width;
   }
-  if (aim.ranges == nullptr) return;
-  const std::size_t place = block.from / survey_block * components + block.first;
-  std::copy_n(low.begin(), block.count, survey.bounds.low.data() + place);
-  std::copy_n(high.begin(), block.count, survey.bounds.high.data() + place);
-  std::copy_n(slack.begin(), block.count, survey.bounds.slack.data() + place);
+}
+
+/// Integrals of |f| on the elements of a block.
+void find_absolute(const Space& space, const AbsIntegral& absolute, const SurveyBlock& block,
+                   std::size_t components, SurveyRoom& room, double* to) {
+  room.points.resize(absolute.room());
+  const LaneSurvey& found = room.found;
+  const double* c = block.c;
+  for (std::size_t e = block.from; e < block.to; ++e, to += components) {
+    const std::size_t place = (e - block.from) * lanes;
+    for (std::size_t k = 0; k < block.count; ++k)
+      to[k] = absolute(e, c + k, block.width, found.least[place + k], found.most[place + k],
+                       found.integral[place + k], room.points);
+    c += at(bernstein::triangle_size(space.degree(ElementId(e)))) * block.width;
+  }
+}
+
+/// Copies `count` numbers of each row.
+void copy_rows(std::size_t rows, const double* from, std::size_t count, double* to,
+               std::size_t stride) {
+  for (std::size_t r = 0; r < rows; ++r, from += lanes, to += stride) {
+    if (count == lanes)
+      std::copy_n(from, lanes, to);
+    else
+      for (std::size_t k = 0; k < count; ++k) to[k] = from[k];
+  }
 }
 
 }  // namespace
@@ -111,16 +127,28 @@ Survey make_survey(const Space& space, std::size_t components, const SurveyAim& 
 }
 
 void look(const Space& space, const SurveyAim& aim, const SurveyBlock& block, Survey& survey,
-          std::vector<double>& scratch) {
-  if (aim.absolute != nullptr) scratch.resize(aim.absolute->room());
-  const int uniform = space.uniform_degree();
-  bernstein::with_triangle_size(
-      uniform >= 0 ? at(bernstein::triangle_size(uniform)) : 0, [&](auto fixed) {
-        if (block.width == 1)
-          look_at<fixed(), 1>(space, aim, block, survey, scratch);
-        else
-          look_at<fixed(), survey_width>(space, aim, block, survey, scratch);
-      });
+          SurveyRoom& room) {
+  const std::size_t components = survey.bounds.components;
+  look_at_elements(space, aim, block, room.found);
+  const std::size_t begin = block.from * components + block.first;
+  if (!aim.basis_integrals.empty())
+    copy_rows(block.to - block.from, room.found.integral.data(), block.count,
+              survey.integrals.data() + begin, components);
+  if (aim.absolute != nullptr)
+    find_absolute(space, *aim.absolute, block, components, room, survey.absolute.data() + begin);
+  if (aim.ranges == nullptr) return;
+  const std::span<const double> share = aim.ranges->widenings();
+  // Where an element must be bounded by itself, that is done where it matters.
+  if (!share.empty() && std::any_of(share.begin() + static_cast<std::ptrdiff_t>(block.from),
+                                    share.begin() + static_cast<std::ptrdiff_t>(block.to),
+                                    [](double own) { return own < 0.0; })) {
+    room.found.low.fill(-std::numeric_limits<double>::infinity());
+    room.found.high.fill(std::numeric_limits<double>::infinity());
+  }
+  const std::size_t place = block.from / survey_block * components + block.first;
+  std::copy_n(room.found.low.begin(), block.count, survey.bounds.low.data() + place);
+  std::copy_n(room.found.high.begin(), block.count, survey.bounds.high.data() + place);
+  std::copy_n(room.found.slack.begin(), block.count, survey.bounds.slack.data() + place);
 }
 
 Survey survey(const Space& space, std::span<const Column> columns, const SurveyAim& aim,
@@ -130,7 +158,8 @@ Survey survey(const Space& space, std::span<const Column> columns, const SurveyA
   const std::size_t per_task = blocks_per_task * survey_block;
   parallel_for((elements + per_task - 1) / per_task,
                [&](std::size_t task) {
-                 std::vector<double> room, scratch;
+                 std::vector<double> gathered;
+                 SurveyRoom room;
                  const std::size_t end = std::min(elements, (task + 1) * per_task);
                  for (std::size_t from = task * per_task; from < end; from += survey_block) {
                    const std::size_t to = std::min(end, from + survey_block);
@@ -148,16 +177,16 @@ Survey survey(const Space& space, std::span<const Column> columns, const SurveyA
                      if (few && columns[first].stride == 1) {
                        block.c = columns[first].first + begin;
                      } else {
-                       room.resize(size * width);
+                       gathered.resize(size * width);
                        for (std::size_t k = 0; k < width; ++k) {
                          const Column& column = columns[first + std::min(k, count - 1)];
                          const double* from_c = column.first + begin * column.stride;
                          for (std::size_t n = 0; n < size; ++n)
-                           room[n * width + k] = from_c[n * column.stride];
+                           gathered[n * width + k] = from_c[n * column.stride];
                        }
-                       block.c = room.data();
+                       block.c = gathered.data();
                      }
-                     look(space, aim, block, found, scratch);
+                     look(space, aim, block, found, room);
                      if (visit) visit(block);
                      first += count;
                    }

@@ -8,11 +8,12 @@
 
 #include "bezel/field/element_range.hpp"
 #include "bezel/field/integrals.hpp"
+#include "bezel/field/survey_lanes.hpp"
 
 namespace bezel::field_detail {
 
 /// Elements that are looked at together, and components side by side.
-inline constexpr std::size_t survey_block = BlockBounds::block, survey_width = 8;
+inline constexpr std::size_t survey_block = BlockBounds::block, survey_width = lanes;
 
 /// One component of a field: its coefficients are `stride` apart.
 struct Column {
@@ -47,10 +48,15 @@ struct Survey {
 /// Room for what is looked for.
 Survey make_survey(const Space& space, std::size_t components, const SurveyAim& aim);
 
+/// What one thread needs, kept from block to block.
+struct SurveyRoom {
+  LaneSurvey found;
+  std::vector<double> points;  // for integrals of |f|
+};
+
 /// Looks at one block. May be called for several blocks at once.
-/// @param scratch  of one thread, kept from block to block
 void look(const Space& space, const SurveyAim& aim, const SurveyBlock& block, Survey& survey,
-          std::vector<double>& scratch);
+          SurveyRoom& room);
 
 /// Looks at all elements.
 /// @param visit  called after each look, by several threads at once

@@ -310,31 +310,31 @@ std::vector<std::vector<double>> take_fields(Group& g, std::span<const std::size
   // Some fields a task, some rows for one field after the other: what lies side by side is read
   // once, and what is written need not be set to 0 before.
   constexpr std::size_t some_fields = 8;
-  parallel_for((components.size() + some_fields - 1) / some_fields,
-               [&](std::size_t task) {
-                 const std::size_t begin = task * some_fields,
-                                   end = std::min(begin + some_fields, components.size());
-                 for (std::size_t m = begin; m < end; ++m) parts[m].reserve(rows * components[m]);
-                 std::vector<double> buffer, scratch;
-                 for (std::size_t e = 0; e < elements; e += field_detail::survey_block) {
-                   const std::size_t last = std::min(e + field_detail::survey_block, elements);
-                   const std::size_t row = space.offset(ElementId(e));
-                   const std::size_t count =
-                       (last < elements ? space.offset(ElementId(last)) : rows) - row;
-                   const double* const block = g.out.data() + row * all;
-                   for (std::size_t m = begin; m < end; ++m)
-                     append_columns(block + first[m], all, count, components[m], buffer, parts[m]);
-                   for (std::size_t c = first[begin]; look && c < first[end]; c += lanes) {
-                     const std::size_t some = std::min(lanes, first[end] - c);
-                     buffer.resize(count * lanes);
-                     for (std::size_t n = 0; n < count; ++n)
-                       std::copy_n(block + n * all + c, some, buffer.data() + n * lanes);
-                     field_detail::look(space, aim, {e, last, c, some, lanes, buffer.data()},
-                                        survey, scratch);
-                   }
-                 }
-               },
-               threads);
+  parallel_for(
+      (components.size() + some_fields - 1) / some_fields,
+      [&](std::size_t task) {
+        const std::size_t begin = task * some_fields,
+                          end = std::min(begin + some_fields, components.size());
+        for (std::size_t m = begin; m < end; ++m) parts[m].reserve(rows * components[m]);
+        std::vector<double> buffer;
+        field_detail::SurveyRoom room;
+        for (std::size_t e = 0; e < elements; e += field_detail::survey_block) {
+          const std::size_t last = std::min(e + field_detail::survey_block, elements);
+          const std::size_t row = space.offset(ElementId(e));
+          const std::size_t count = (last < elements ? space.offset(ElementId(last)) : rows) - row;
+          const double* const block = g.out.data() + row * all;
+          for (std::size_t m = begin; m < end; ++m)
+            append_columns(block + first[m], all, count, components[m], buffer, parts[m]);
+          for (std::size_t c = first[begin]; look && c < first[end]; c += lanes) {
+            const std::size_t some = std::min(lanes, first[end] - c);
+            buffer.resize(count * lanes);
+            for (std::size_t n = 0; n < count; ++n)
+              std::copy_n(block + n * all + c, some, buffer.data() + n * lanes);
+            field_detail::look(space, aim, {e, last, c, some, lanes, buffer.data()}, survey, room);
+          }
+        }
+      },
+      threads);
   return parts;
 }
 
