@@ -102,8 +102,10 @@ void ElementTransfer::add_extension(const Group& g, std::int32_t t, const Region
     const int pd = g.donor_space->degree(ElementId(d));
     if (d != donor) {
       const auto scaled = g.donor_scaled(d);
-      if (donor == exterior)
-        for (std::size_t c = 0; c < nc; ++c) constant.push_back(g.constant_of(donor_, d, c));
+      if (donor == exterior) {
+        constant.resize(nc);
+        g.constants_of(donor_, d, constant);
+      }
       take_off(pd, scaled, constant);
       donor = d;
     }

@@ -18,7 +18,8 @@ inline int pulled_points(int degree) {
   return degree / 2 + 1 + inexact_extra / 2;
 }
 
-/// Donors smaller than this fraction of the target's area get their areas from rays of their own.
+/// Donors smaller than this fraction of the target's area get their areas and integrals from rays
+/// of their own: about a place in the target, masses are known to its rounding.
 inline constexpr double small_area = 1.0 / 64.0;
 
 /// A point of an element and the derivatives of its map.

@@ -237,7 +237,7 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
     if (regions[k].thin) {
       const RegionShape& shape = thin_shape(t, d, run_of(own, k), false);
       regions[k].area = shape.area;
-      regions[k].bridged = true;
+      regions[k].apart = true;
       note_thin_region(t, d, shape, outcome);
       return;
     }
@@ -247,7 +247,7 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
       shape = &shape_of(run_of(own, k));
     }
     regions[k].area = shape->area;
-    regions[k].bridged = !shape->bridges.empty();
+    regions[k].apart = !shape->bridges.empty();
     note_region(t, d, shape->area, shape->gap, shape->bridges, outcome);
   };
   const bool batch = donor_.degree == target_.degree && target_.degree <= max_batch_degree;
@@ -300,6 +300,7 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
     if (small || element_.loose || open) {
       element_.loose = element_.loose || open;
       note(k);
+      regions[k].apart = regions[k].apart || small;
       continue;
     }
     regions[k].area = area;
@@ -322,7 +323,9 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
     region_sums(piece_table(target_.degree, 2 * degree), 2 * degree, {place, element_.origin},
                 own.pieces, {&all, 1}, batch_);
   }
-  const double* some = nullptr;
+  // Constants come back whatever the rounding of the moments when they are not integrated at all.
+  const std::span<double> base = std::span(state.base).first(nc);
+  bool any = false;
   const std::size_t count = own.donors.size();
   const std::size_t stride = static_cast<std::size_t>(bernstein::triangle_size(degree)) * nc;
   if (regions_.size() < count) regions_.resize(2 * count);
@@ -333,17 +336,18 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
     const std::int32_t d = own.donors[k];
     if (d == exterior) continue;
     const double* const powers = g.powers.data() + static_cast<std::size_t>(d) * stride;
-    if (some == nullptr) some = powers;
-    if (element_.regions[k].bridged) continue;
+    if (any)
+      keep_smaller(base, powers);
+    else
+      std::copy_n(powers, nc, base.begin());
+    any = true;
+    if (element_.regions[k].apart) continue;
     region.frame = &g.donor_frame[static_cast<std::size_t>(d)];
     region.donor = powers;
   }
   const std::span<BatchRegion> regions = std::span(regions_).first(count);
-  // Constants come back whatever the rounding of the moments when they are not integrated at all.
-  double* base = state.base.data();
-  for (std::size_t c = 0; c < nc; ++c) base[c] = some != nullptr ? some[c] : 0.0;
   Accumulators& sums = state.moments;
-  add_batch(degree, place, batch_, regions, g.components, base, sums.product.data(),
+  add_batch(degree, place, batch_, regions, g.components, base.data(), sums.product.data(),
             sums.basis.data(), mass.data());
   if (target_.degree > 1) {
     Refilled<double>& whole = state.whole;
@@ -353,7 +357,7 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
   }
   for (std::size_t k = 0; k < count; ++k) {
     const RegionState& region = element_.regions[k];
-    if (!regions[k].far && (!region.bridged || own.donors[k] == exterior)) continue;
+    if (!regions[k].far && (!region.apart || own.donors[k] == exterior)) continue;
     add_apart(i, t, own.donors[k], run_of(own, k), region.area, region.thin,
               mass.subspan(k * nc, nc));
   }

@@ -392,11 +392,18 @@ std::span<const std::array<Vec2, 2>> ElementTransfer::plane_bridges(const Region
 // Constants come back whatever the rounding of the sums when they are not integrated at all.
 void ElementTransfer::choose_base(std::size_t i, const ElementPieces& own) {
   const Group& g = groups_[i];
-  const auto some = std::find_if(own.donors.begin(), own.donors.end(),
-                                 [](std::int32_t d) { return d != exterior; });
-  const std::int32_t d = some != own.donors.end() ? *some : search_.nearest(element_.origin);
-  for (std::size_t c = 0; c < static_cast<std::size_t>(g.components); ++c)
-    element_.groups[i].base[c] = g.constant_of(donor_, d, c);
+  const std::span<double> base =
+      std::span(element_.groups[i].base).first(static_cast<std::size_t>(g.components));
+  const auto some = std::ranges::find_if(own.donors, [](std::int32_t d) { return d != exterior; });
+  if (some == own.donors.end())
+    return g.constants_of(donor_, search_.nearest(element_.origin), base);
+  g.constants_of(donor_, *some, base);
+  std::vector<double> other(base.size());
+  for (auto d = some + 1; d != own.donors.end(); ++d) {
+    if (*d == exterior) continue;
+    g.constants_of(donor_, *d, other);
+    keep_smaller(base, other.data());
+  }
 }
 
 void ElementTransfer::begin_moments(std::size_t i) {

@@ -138,8 +138,8 @@ class ElementTransfer {
   struct RegionState {
     double area = 0;
     std::int32_t mass_row = -1;  ///< of the list of masses
-    bool bridged = false;
-    bool thin = false;  ///< goes by thin_shape() and add_thin_pair()
+    bool apart = false;  ///< by its own pieces: its joints are bridged, or its donor is small
+    bool thin = false;   ///< goes by thin_shape() and add_thin_pair()
   };
   /// One group of fields on the element.
   struct GroupState {

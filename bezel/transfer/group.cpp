@@ -260,18 +260,20 @@ ScaledCoefficients Group::donor_scaled(std::int32_t e) const {
   return ScaledCoefficients(std::span<const double>(scaled_).subspan(place, size * nc));
 }
 
-double Group::constant_of(const OverlayMesh& donor, std::int32_t e, std::size_t component) const {
+void Group::constants_of(const OverlayMesh& donor, std::int32_t e,
+                         std::span<double> constants) const {
   const auto d = static_cast<std::size_t>(e);
-  const auto nc = static_cast<std::size_t>(components);
   const auto factors = multinomials(donor_space->degree(ElementId(e)));
-  const ScaledCoefficients all_own = donor_scaled(e);
-  const double* const own = all_own.data() + component * factors.size();
-  bool equal = true;
-  for (std::size_t n = 0; n < factors.size(); ++n) {
-    const double all = own[0] * factors[n];
-    equal = equal && std::abs(own[n] - all) <= equal_rounding * std::abs(all);
+  const ScaledCoefficients scaled = donor_scaled(e);
+  const double* own = scaled.data();
+  for (std::size_t c = 0; c < constants.size(); ++c, own += factors.size()) {
+    bool equal = true;
+    for (std::size_t n = 0; n < factors.size(); ++n) {
+      const double all = own[0] * factors[n];
+      equal = equal && std::abs(own[n] - all) <= equal_rounding * std::abs(all);
+    }
+    constants[c] = equal ? own[0] : donor_mass[d * constants.size() + c] / donor.element_area[d];
   }
-  return equal ? own[0] : donor_mass[d * nc + component] / donor.element_area[d];
 }
 
 std::span<double> Group::target_out(std::int32_t e) {

@@ -2,6 +2,7 @@
 // Internal: donor fields that are integrated together, laid out for the sums.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -97,9 +98,9 @@ struct Group {
   const double* donor_powers(std::int32_t e) const {
     return powers.data() + donor_space->offset(ElementId(e)) * static_cast<std::size_t>(components);
   }
-  /// The mean of a donor element's component, or, when all coefficients are equal up to rounding,
-  /// the first of them: a constant less this number is 0.
-  double constant_of(const OverlayMesh& donor, std::int32_t e, std::size_t component) const;
+  /// By component, the mean of a donor element's polynomial, or, when all coefficients are equal up
+  /// to rounding, the first of them: a constant less this number is 0.
+  void constants_of(const OverlayMesh& donor, std::int32_t e, std::span<double> constants) const;
   std::span<double> target_out(std::int32_t e);
   /// Frees the donor's coefficients: nothing can be integrated any more.
   void drop_donor();
@@ -121,6 +122,14 @@ struct Group {
   std::vector<std::size_t> scaled_offset_;                   // per degree, for basis functions
   std::vector<Frame> made_donor_frame_, made_target_frame_;  // those that no space has
 };
+
+/// Of two constants that may be taken off the donors around an element, the one of smaller
+/// magnitude, by component: then the rounding of an integral of the constant over the element is
+/// rounding of the integral of |f|, also where f is 0 on nearly all donors.
+inline void keep_smaller(std::span<double> constant, const double* other) {
+  for (std::size_t c = 0; c < constant.size(); ++c)
+    constant[c] = std::abs(other[c]) < std::abs(constant[c]) ? other[c] : constant[c];
+}
 
 /// The coefficients of a group's fields, one field after the other; taken out of the group.
 /// @param components  of each field

@@ -209,8 +209,19 @@ void PairFit::begin(std::size_t i, const Group& g, std::int32_t t,
   any_ = false;
   // Of a donor, so that a constant leaves nothing to integrate.
   zero(constant_, static_cast<std::size_t>(g.components));
-  const std::int32_t d = segments.back().donor;
-  if (around_a_constant && d != exterior) constant_ = donor_of(d).mean;
+  std::int32_t last = exterior;
+  bool any = false;
+  for (const Segment& segment : segments) {
+    const std::int32_t d = segment.donor;
+    if (!around_a_constant || d == exterior || d == last) continue;
+    const std::vector<double>& mean = donor_of(d).mean;
+    if (any)
+      keep_smaller(constant_, mean.data());
+    else
+      constant_ = mean;
+    any = true;
+    last = d;
+  }
   make_target_points(segments);
 }
 
@@ -305,7 +316,7 @@ const PairFit::Donor& PairFit::donor_of(std::int32_t d) {
   donor.element = d;
   const auto nc = static_cast<std::size_t>(g_->components);
   donor.mean.resize(nc);
-  for (std::size_t c = 0; c < nc; ++c) donor.mean[c] = g_->constant_of(donor_, d, c);
+  g_->constants_of(donor_, d, donor.mean);
   if (!g_->donor_mapped) return donor;
   donor.map.set(donor_.degree, donor_.element(d));
   const int pd = g_->donor_space->degree(ElementId(d));

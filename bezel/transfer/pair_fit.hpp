@@ -23,7 +23,8 @@ class PairFit {
   static bool can(const Group& g, const OverlayMesh& donor, const OverlayMesh& target);
 
   /// Starts on target element t for group number i.
-  /// @param around_a_constant  whether only what differs from one donor's mean is integrated
+  /// @param around_a_constant  whether only what differs from the smallest of the donors' means is
+  ///                           integrated
   void begin(std::size_t i, const Group& g, std::int32_t t, std::span<const Segment> segments,
              bool around_a_constant);
   /// Adds the pair with donor d, the segments begin .. end; false where the maps are too far from
