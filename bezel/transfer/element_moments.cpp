@@ -325,7 +325,7 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
   }
   // Constants come back whatever the rounding of the moments when they are not integrated at all.
   const std::span<double> base = std::span(state.base).first(nc);
-  bool any = false;
+  SmallestConstants constants(base);
   const std::size_t count = own.donors.size();
   const std::size_t stride = static_cast<std::size_t>(bernstein::triangle_size(degree)) * nc;
   if (regions_.size() < count) regions_.resize(2 * count);
@@ -336,11 +336,7 @@ void ElementTransfer::add_batched(std::size_t i, std::int32_t t, const ElementPi
     const std::int32_t d = own.donors[k];
     if (d == exterior) continue;
     const double* const powers = g.powers.data() + static_cast<std::size_t>(d) * stride;
-    if (any)
-      keep_smaller(base, powers);
-    else
-      std::copy_n(powers, nc, base.begin());
-    any = true;
+    constants.take(powers);
     if (element_.regions[k].apart) continue;
     region.frame = &g.donor_frame[static_cast<std::size_t>(d)];
     region.donor = powers;

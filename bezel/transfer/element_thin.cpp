@@ -286,7 +286,7 @@ void ElementTransfer::add_thin_pair(const Group& g, std::int32_t t, std::int32_t
   const bool fitted = fitted_[static_cast<std::size_t>(&g - groups_.data())] != 0;
   const int mass_degree = fitted ? degree : degree + inexact_extra;
   thin_reference_nodes(d, run, mass_degree,
-                       fitted ? PairFit::mass_points(degree) : pulled_points(mass_degree));
+                       fitted ? FitDonors::mass_points(degree) : pulled_points(mass_degree));
   const double third = 1.0 / 3.0;
   double weight = 0.0;
   thin_reference_fan({third, third}, degree,

@@ -155,11 +155,9 @@ void ElementTransfer::sum_together(std::size_t i, std::span<const std::int32_t> 
   std::vector<double>& base = group.base;
   base.resize(lanes * nc + batch_padding);
   for (std::size_t k = 0; k < elements.size(); ++k) {
-    const std::span<double> own = std::span(base).subspan(k * nc, nc);
-    const std::size_t first = batch.first_region[k];
-    std::copy_n(batch.donor[first], nc, own.begin());
-    for (std::size_t r = first + 1; r < batch.first_region[k + 1]; ++r)
-      keep_smaller(own, batch.donor[r]);
+    SmallestConstants constants({base.data() + k * nc, nc});
+    for (std::size_t r = batch.first_region[k]; r < batch.first_region[k + 1]; ++r)
+      constants.take(batch.donor[r]);
   }
   add_elements(degree, batch, g.components, base.data(), group.sums);
 }

@@ -397,12 +397,12 @@ void ElementTransfer::choose_base(std::size_t i, const ElementPieces& own) {
   const auto some = std::ranges::find_if(own.donors, [](std::int32_t d) { return d != exterior; });
   if (some == own.donors.end())
     return g.constants_of(donor_, search_.nearest(element_.origin), base);
-  g.constants_of(donor_, *some, base);
-  std::vector<double> other(base.size());
-  for (auto d = some + 1; d != own.donors.end(); ++d) {
+  SmallestConstants smallest(base);
+  std::vector<double> constants(base.size());
+  for (auto d = some; d != own.donors.end(); ++d) {
     if (*d == exterior) continue;
-    g.constants_of(donor_, *d, other);
-    keep_smaller(base, other.data());
+    g.constants_of(donor_, *d, constants);
+    smallest.take(constants.data());
   }
 }
 

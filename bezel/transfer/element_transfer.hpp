@@ -21,6 +21,7 @@
 #include "bezel/transfer/overlay.hpp"
 #include "bezel/transfer/pair_fit.hpp"
 #include "bezel/transfer/piece_batch.hpp"
+#include "bezel/transfer/refilled.hpp"
 #include "bezel/transfer/thin_region.hpp"
 #include "bezel/transfer/transfer.hpp"
 
@@ -90,20 +91,6 @@ class ElementTransfer {
   struct Node {
     Vec2 x, dx;                       // point and derivative times weight, in the plane
     std::array<double, 2> q{}, dq{};  // the same in reference coordinates, when used
-  };
-  /// A list that keeps its storage when an empty one is assigned to it.
-  template <class T>
-  struct Refilled : std::vector<T> {
-    using std::vector<T>::vector;
-    Refilled(const Refilled&) = default;
-    Refilled& operator=(const Refilled& other) {
-      if (other.empty())
-        this->clear();
-      else
-        std::vector<T>::operator=(other);
-      return *this;
-    }
-    ~Refilled() = default;
   };
   struct Accumulators {
     Refilled<double> product, basis, mass;

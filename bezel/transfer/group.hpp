@@ -123,13 +123,24 @@ struct Group {
   std::vector<Frame> made_donor_frame_, made_target_frame_;  // those that no space has
 };
 
-/// Of two constants that may be taken off the donors around an element, the one of smaller
-/// magnitude, by component: then the rounding of an integral of the constant over the element is
-/// rounding of the integral of |f|, also where f is 0 on nearly all donors.
-inline void keep_smaller(std::span<double> constant, const double* other) {
-  for (std::size_t c = 0; c < constant.size(); ++c)
-    constant[c] = std::abs(other[c]) < std::abs(constant[c]) ? other[c] : constant[c];
-}
+/// Of constants that may be taken off the donors around an element, those of smallest magnitude, by
+/// component: then the rounding of an integral of the constant over the element is rounding of the
+/// integral of |f|, also where f is 0 on nearly all donors.
+class SmallestConstants {
+ public:
+  /// @param constants  [component] out; they keep what they hold until the first take()
+  explicit SmallestConstants(std::span<double> constants) : constants_(constants) {}
+  /// @param donors  [component] constants of a donor
+  void take(const double* donors) {
+    for (std::size_t c = 0; c < constants_.size(); ++c)
+      if (!any_ || std::abs(donors[c]) < std::abs(constants_[c])) constants_[c] = donors[c];
+    any_ = true;
+  }
+
+ private:
+  std::span<double> constants_;
+  bool any_ = false;
+};
 
 /// The coefficients of a group's fields, one field after the other; taken out of the group.
 /// @param components  of each field

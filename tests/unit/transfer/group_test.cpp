@@ -28,6 +28,15 @@ TEST(Group, HoldsTheComponentsOfItsFields) {
   }
 }
 
+TEST(SmallestConstants, KeepsTheSmallestByComponent) {
+  std::vector<double> constants = {7.0, 7.0};
+  SmallestConstants smallest(constants);
+  EXPECT_EQ(constants, (std::vector<double>{7.0, 7.0}));
+  const std::vector<std::vector<double>> donors = {{8.0, -3.0}, {-2.0, 4.0}, {2.0, -1.0}};
+  for (const std::vector<double>& of_donor : donors) smallest.take(of_donor.data());
+  EXPECT_EQ(constants, (std::vector<double>{-2.0, -1.0}));
+}
+
 TEST(AffineFrame, LambdaAreTheBarycentrics) {
   const std::array<Vec2, 3> corners = {{{{0, 0}}, {{2, 0}}, {{0, 4}}}};
   const Frame frame = affine_frame(corners);
