@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 #include "bezel/bernstein/certified_batch.hpp"
@@ -16,11 +15,14 @@
 #include "bezel/bernstein/exact.hpp"
 #include "bezel/bernstein/interval.hpp"
 #include "bezel/numeric/eft.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::bernstein {
 namespace {
 
-constexpr double u = 0x1p-53, infinity = std::numeric_limits<double>::infinity();
+using short_names::infinity;
+using short_names::u;
+
 constexpr double smallest_kept = 0x1p-960;  // of scaled results: below, their bounds are subnormal
 constexpr double underflow_bound = 0x1p-1000;  // of all underflows together, coefficients near 1
 

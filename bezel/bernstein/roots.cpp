@@ -19,12 +19,14 @@
 #include "bezel/bernstein/interval_kernel.hpp"
 #include "bezel/numeric/double_double.hpp"
 #include "bezel/numeric/eft.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::bernstein {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double u = 0x1p-53;
+using short_names::infinity;
+using short_names::u;
+
 constexpr double tiny = 0x1p-1050;  // covers underflow: below 6 d^2 roundings of 2^-1075
 constexpr int levels_below_doubles = 64;
 

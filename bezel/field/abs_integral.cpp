@@ -6,19 +6,18 @@
 
 #include "bezel/field/element_kernel.hpp"
 #include "bezel/field/integrals.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::field_detail {
 namespace {
+
+using short_names::at;
 
 constexpr std::size_t pieces = 16;  // of an element where |f| changes sign: two rounds of splitting
 /// On the pieces where f changes sign the kink decides, and a higher degree does not help.
 constexpr int piece_degree = 5;
 /// Elements lie in their frames up to the rounding of barycentric coordinates.
 constexpr double outside = -1e-12;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// The rule on the pieces of the reference triangle.
 TriangleRule on_pieces(const TriangleRule& rule) {

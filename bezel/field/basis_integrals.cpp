@@ -12,15 +12,13 @@
 #include "bezel/geometry/jacobian_kernel.hpp"
 #include "bezel/numeric/binomial.hpp"
 #include "bezel/numeric/lanes.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::field_detail {
 namespace {
 
 using geometry_kernel::JacobianTable;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using short_names::at;
 
 /// A Gauss rule on a side: values and derivatives of its basis functions, [point][function].
 struct SideRule {

@@ -6,14 +6,13 @@
 
 #include "bezel/numeric/eft.hpp"
 #include "bezel/numeric/lanes.hpp"
+#include "bezel/numeric/short_names.hpp"
 #include "bezel/numeric/sum.hpp"
 
 namespace bezel::field_detail {
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using short_names::at;
 
 }  // namespace
 

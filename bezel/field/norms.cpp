@@ -12,6 +12,7 @@
 #include "bezel/field/field.hpp"
 #include "bezel/field/formula_kernel.hpp"
 #include "bezel/field/survey.hpp"
+#include "bezel/numeric/short_names.hpp"
 #include "bezel/numeric/sum.hpp"
 
 namespace bezel {
@@ -20,10 +21,7 @@ namespace {
 using field_detail::ElementMap;
 using field_detail::MapPoint;
 using field_detail::RuleTable;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using short_names::at;
 
 /// Weights of a rule times the Jacobian determinant.
 std::vector<double> measure(ElementMap map, std::span<const Lambda> lambda,

@@ -9,18 +9,16 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/bernstein/triangle.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::field_detail {
 namespace {
 
 using bernstein::Range;
+using short_names::at;
+using short_names::u;
 
-constexpr double u = 0x1p-53;
 constexpr int piece_depth = 12;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 }  // namespace
 

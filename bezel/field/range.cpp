@@ -10,6 +10,7 @@
 #include "bezel/field/element_kernel.hpp"
 #include "bezel/field/element_range.hpp"
 #include "bezel/field/piece_bounds.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel {
 namespace {
@@ -22,12 +23,8 @@ using field_detail::component_of;
 using field_detail::composable;
 using field_detail::largest;
 using field_detail::piece_bounds;
-
-constexpr double u = 0x1p-53;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using short_names::at;
+using short_names::u;
 
 /// Bound of the rounding error of Frame::lambda at a point.
 double lambda_error(const Frame& frame, const Vec2& p) {

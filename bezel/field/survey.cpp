@@ -6,15 +6,14 @@
 
 #include "bezel/bernstein/fixed_size.hpp"
 #include "bezel/field/element_kernel.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::field_detail {
 namespace {
 
-constexpr std::size_t blocks_per_task = 16;
+using short_names::at;
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+constexpr std::size_t blocks_per_task = 16;
 
 /// As look_at_lanes(), for one component; the results stand in the first of the lanes.
 void look_at_one(std::size_t first, std::size_t elements, std::size_t size, const double* c,

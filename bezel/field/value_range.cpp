@@ -12,22 +12,20 @@
 #include "bezel/field/element_range.hpp"
 #include "bezel/field/piece_bounds.hpp"
 #include "bezel/field/survey.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel {
 namespace {
 
 using bernstein::Range;
 using field_detail::Known;
+using short_names::at;
+using short_names::u;
 
-constexpr double u = 0x1p-53;
 /// Elements that reach farther out of their frames (caller's frames) are bounded one by one.
 constexpr double far_outside = 1e-3;
 /// Corners this near to those of the frame are the same up to rounding.
 constexpr double same_corner = 1e-12;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 double power(double x, int d) {
   double product = 1.0;

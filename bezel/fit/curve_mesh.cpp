@@ -17,13 +17,12 @@
 #include "bezel/mesh/bend.hpp"
 #include "bezel/mesh/edge_finder.hpp"
 #include "bezel/mesh/raised_nodes.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel {
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using short_names::at;
 
 std::string place_of(const Vec2& p) {
   return "(" + std::to_string(p.x()) + ", " + std::to_string(p.y()) + ")";

@@ -218,6 +218,10 @@ int levenberg_marquardt(const Problem<dim>& problem, Nodes<dim>& nodes, int iter
 /// Largest |F_i| of the equal-tangent equations F_i = 2 / L p'(xi_i) x tau(t_i).
 template <int dim>
 double tangent_residual(const Problem<dim>& problem, const Nodes<dim>& nodes);
+template <>
+double tangent_residual(const Problem<2>& problem, const Nodes<2>& nodes);
+template <>
+double tangent_residual(const Problem<3>& problem, const Nodes<3>& nodes);
 
 struct NewtonResult {
   double residual;
@@ -232,6 +236,12 @@ struct NewtonResult {
 template <int dim>
 NewtonResult solve_tangents(const Problem<dim>& problem, Nodes<dim>& nodes, bool patient,
                             double converged = 1e-12);
+template <>
+NewtonResult solve_tangents(const Problem<2>& problem, Nodes<2>& nodes, bool patient,
+                            double converged);
+template <>
+NewtonResult solve_tangents(const Problem<3>& problem, Nodes<3>& nodes, bool patient,
+                            double converged);
 
 /// Mean square distance of an interpolant to the curve, measured while searching.
 template <int dim>

@@ -5,13 +5,12 @@
 #include "bezel/base/error.hpp"
 #include "bezel/numeric/double_double.hpp"
 #include "bezel/numeric/quadrature.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel {
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using short_names::at;
 
 // The exact difference of two doubles.
 DoubleDouble difference(double a, double b) {

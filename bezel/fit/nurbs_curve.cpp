@@ -9,13 +9,12 @@
 #include "bezel/fit/curve_interval.hpp"
 #include "bezel/fit/curve_sources.hpp"
 #include "bezel/fit/rational_pieces.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel {
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using short_names::at;
 
 /// Control points in homogeneous coordinates.
 template <int dim>

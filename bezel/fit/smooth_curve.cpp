@@ -11,7 +11,7 @@
 namespace bezel {
 namespace {
 
-constexpr int samples_per_part = 64;
+constexpr int fitted_samples_per_part = 64;
 constexpr std::size_t max_panels = 2000;
 // Derivatives at a breakpoint are taken this fraction of the part inside it.
 constexpr double side = 0x1p-40;
@@ -62,10 +62,10 @@ SmoothCurve<dim>::SmoothCurve(Function function, std::vector<double> breakpoints
 
   double slowest = HUGE_VAL, fastest = 0.0, slowest_at = 0.0;
   for (std::size_t part = 0; part + 1 < ends.size(); ++part) {
-    for (int i = part == 0 ? 0 : 1; i <= samples_per_part; ++i) {
-      const double t = i == samples_per_part
-                           ? ends[part + 1]
-                           : ends[part] + (ends[part + 1] - ends[part]) * i / samples_per_part;
+    for (int i = part == 0 ? 0 : 1; i <= fitted_samples_per_part; ++i) {
+      const double t = i == fitted_samples_per_part ? ends[part + 1]
+                                                    : ends[part] + (ends[part + 1] - ends[part]) *
+                                                                       i / fitted_samples_per_part;
       const CurveJet<dim> jet = state->function(t);
       if (!finite(jet.x) || !finite(jet.d1) || !finite(jet.d2))
         throw InputError(

@@ -10,13 +10,14 @@
 #include "bezel/bernstein/exact.hpp"
 #include "bezel/geometry/curve_kernel.hpp"
 #include "bezel/numeric/dyadic.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::geometry_kernel {
 namespace {
 
 using Exact = std::vector<Dyadic>;
+using short_names::u;
 
-constexpr double u = 0x1p-53;
 constexpr double tiny = 0x1p-1050;  // covers underflow in at most 45 * 60 roundings
 constexpr int doubled_levels = 45, levels = 120;
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -11,16 +10,17 @@
 #include "bezel/geometry/curve_check.hpp"
 #include "bezel/geometry/curve_incidence.hpp"
 #include "bezel/geometry/curve_kernel.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel {
 namespace {
 
 using geometry_kernel::max_curve_points;
 using geometry_kernel::PointBuffer;
+using short_names::infinity;
+using short_names::u;
 
-constexpr double u = 0x1p-53;
 constexpr double tiny = 0x1p-1050;  // covers underflow
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int deepest = 45, most_pieces = 20000;
 
 /// Halves the curve minus p, scaled by a power of two, and compares hulls with the tolerance.

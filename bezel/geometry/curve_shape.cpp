@@ -17,6 +17,7 @@
 #include "bezel/numeric/double_double.hpp"
 #include "bezel/numeric/dyadic.hpp"
 #include "bezel/numeric/quadrature.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel {
 
@@ -81,7 +82,7 @@ std::vector<Vec2> from_nodes(std::span<const Vec2> nodes) {
 
 namespace {
 
-constexpr double u = 0x1p-53;
+using short_names::u;
 
 struct ExactVector {
   Dyadic x, y;

@@ -6,13 +6,12 @@
 #include <utility>
 
 #include "bezel/bernstein/exact.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::geometry_kernel {
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using short_names::at;
 
 /// c becomes the coefficients about `centre`.
 void shift(Polynomial& c, const Dyadic& centre) {

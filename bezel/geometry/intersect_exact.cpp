@@ -13,11 +13,13 @@
 #include "bezel/geometry/curve_kernel.hpp"
 #include "bezel/geometry/intersect_collinear.hpp"
 #include "bezel/geometry/isolate.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::geometry_kernel {
 namespace {
 
-constexpr double u = 0x1p-53;
+using short_names::u;
+
 constexpr int deepest = 40;  // halvings of each curve
 // Roots of a larger condition get exact residuals: the first stage leaves parameters uncertain by
 // 4 u condition, here 2^-31, digits that show in every use of the crossing.
@@ -27,7 +29,7 @@ bool is_point(const CurveCache& c) {
   return c.box.lo == c.box.hi;
 }
 
-int degree(std::span<const Vec2> c) {
+int degree_of(std::span<const Vec2> c) {
   return static_cast<int>(c.size()) - 1;
 }
 
@@ -40,9 +42,9 @@ struct Box {
   int depth;
 };
 
-class Search {
+class ExactSearch {
  public:
-  Search(const CurveCache& a, const CurveCache& b, CurveIntersections& out)
+  ExactSearch(const CurveCache& a, const CurveCache& b, CurveIntersections& out)
       : a_(a.control),
         b_(b.control),
         near_a_(a_),
@@ -157,7 +159,7 @@ class Search {
             smallest = std::min(smallest, std::ilogb(p[x]));
           }
     const double spread = std::max(0, largest - smallest - 40) / 64.0;
-    const double nodes = 60000.0 / (degree(a_) * degree(b_) * (1.0 + spread * spread));
+    const double nodes = 60000.0 / (degree_of(a_) * degree_of(b_) * (1.0 + spread * spread));
     return std::max(256, static_cast<int>(nodes));
   }
 
@@ -279,7 +281,7 @@ class Search {
   /// `start`.
   std::optional<Ratio> foot(const ExactCurve& curve, std::span<const Vec2> control,
                             const ExactPoint& p, const Vec2& rounded, double start) {
-    const int d = degree(control);
+    const int d = degree_of(control);
     double near = start;
     for (int i = 0; i < 40; ++i) {
       const CurvePoint f = curve_point(d, control.data(), near, rounded);
@@ -439,7 +441,7 @@ class Search {
   /// The control points of the parts lie in boxes that are apart, also after rounding.
   bool apart(const Box& box) const {
     PointBuffer<max_curve_points> on_a, on_b;
-    const int m = degree(a_), n = degree(b_);
+    const int m = degree_of(a_), n = degree_of(b_);
     restrict_curve(m, near_a_.data(), box.s0, box.s1, on_a.data());
     restrict_curve(n, near_b_.data(), box.t0, box.t1, on_b.data());
     const Box2 p = control_box(m, on_a.data()), q = control_box(n, on_b.data());
@@ -466,8 +468,8 @@ class Search {
   Crossing crossing(ResolvedRoot root) const {
     root.s = reported(root.s, root.s_end);
     root.t = reported(root.t, root.t_end);
-    const CurvePoint p = curve_point(degree(a_), near_a_.data(), root.s);
-    const CurvePoint q = curve_point(degree(b_), near_b_.data(), root.t);
+    const CurvePoint p = curve_point(degree_of(a_), near_a_.data(), root.s);
+    const CurvePoint q = curve_point(degree_of(b_), near_b_.data(), root.t);
     Crossing c{};
     c.s = root.s;
     c.t = root.t;
@@ -568,7 +570,7 @@ void CoincidenceMap::image(double s0, double s1, double& lo, double& hi) const {
 }
 
 void intersect_exactly(const CurveCache& a, const CurveCache& b, CurveIntersections& out) {
-  Search(a, b, out).run();
+  ExactSearch(a, b, out).run();
 }
 
 }  // namespace bezel::geometry_kernel

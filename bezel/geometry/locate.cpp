@@ -13,10 +13,8 @@
 namespace bezel {
 namespace {
 
-using Corners = std::array<Lambda, 3>;
-constexpr Corners whole{Lambda{1, 0, 0}, Lambda{0, 1, 0}, Lambda{0, 0, 1}};
-constexpr int max_depth = 90;  // bisections
-constexpr int max_pieces = 4000;
+using geometry_kernel::TriangleCorners;
+using geometry_kernel::whole_triangle;
 
 /// True when a line separates p from the control points by more than margin: x, y and the three
 /// sides' normals.
@@ -75,14 +73,16 @@ LocateResult locate(int g, std::span<const Vec2> control, const Vec2& p, double 
     return finish(found.converged ? Location::outside : Location::not_converged, found.lambda);
   Lambda nearest = found.converged ? found.lambda : best.lambda;
 
+  constexpr int max_depth = 90;  // bisections
+  constexpr int max_pieces = 4000;
   struct Piece {
     std::vector<Vec2> b;
-    Corners corner;
+    TriangleCorners corner;
     int depth;
   };
   const std::size_t n = control.size();
   std::vector<Piece> stack;
-  stack.push_back({std::vector<Vec2>(control.begin(), control.end()), whole, 0});
+  stack.push_back({std::vector<Vec2>(control.begin(), control.end()), whole_triangle, 0});
   bool undecided = false;
   for (int pieces = 0; !stack.empty(); ++pieces) {
     Piece piece = std::move(stack.back());

@@ -10,9 +10,9 @@
 namespace bezel::geometry_kernel {
 namespace {
 
-constexpr double least_sine = 0.01;
+constexpr double least_sine_at_ends = 0.01;
 /// Of the smaller curve: an end this far from the other is none of its points.
-constexpr double farthest = 1e-3 * least_sine;
+constexpr double farthest = 1e-3 * least_sine_at_ends;
 
 struct EndContact {
   double s, t;
@@ -30,7 +30,7 @@ Directions directions(const CurveCache& a, bool turn_a, const CurveCache& b, boo
   // dot   = dot(u, v) (1 + alpha beta) - cross(u, v) (beta - alpha), extreme where both are.
   const double sine = cross(a.chord, b.chord);
   const double cosine = dot(a.chord, b.chord);
-  const double least = 2.0 * least_sine * a.chord_length * b.chord_length;
+  const double least = 2.0 * least_sine_at_ends * a.chord_length * b.chord_length;
   const double turn = turn_a != turn_b ? -1.0 : 1.0;
   Directions result{true, true};
   const std::size_t corners = a.slope_lo < a.slope_hi || b.slope_lo < b.slope_hi ? 2 : 1;

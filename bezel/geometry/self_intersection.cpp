@@ -13,19 +13,17 @@
 #include "bezel/geometry/curve_kernel.hpp"
 #include "bezel/geometry/newton_intersection_kernel.hpp"
 #include "bezel/numeric/dyadic.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel {
 namespace {
 
 using bernstein::ExactPolynomial;
 using geometry_kernel::NewtonCurve;
+using short_names::at;
+using short_names::u;
 
-constexpr double u = 0x1p-53;
-constexpr int deepest = 40;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+constexpr int max_level = 40;
 
 /// [lo, hi]^2 around a cusp, or [0, hi] x [lo, 1] at the joint of a closed curve: holds no pair.
 struct Excluded {
@@ -343,7 +341,7 @@ class SelfSearch {
     const bool parallel = box.level >= 12 && box.t_lo - box.s_hi >= 1024 * (box.s_hi - box.s_lo);
     // (Straight curves are lost across their line from the start.)
     const bool lost = position == Hull::lost && box.level >= 8;
-    if (parallel || lost || box.level >= deepest || boxes_ >= most_boxes_) {
+    if (parallel || lost || box.level >= max_level || boxes_ >= most_boxes_) {
       leave_open(box);
       return;
     }

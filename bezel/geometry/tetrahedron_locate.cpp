@@ -11,16 +11,14 @@
 #include "bezel/geometry/tetrahedron.hpp"
 #include "bezel/geometry/tetrahedron_check.hpp"
 #include "bezel/geometry/tetrahedron_kernel.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel {
 namespace {
 
 using bernstein::tetrahedron::kernel::Bisection;
 using geometry_kernel::cross3;
-using Corners = std::array<Lambda4, 4>;
-constexpr int max_depth = 90;  // bisections
-constexpr int max_pieces = 4000;
-constexpr double u = 0x1p-53;
+using short_names::u;
 
 double largest_coordinate(const Vec3& p) {
   return std::max({std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
@@ -94,12 +92,6 @@ Lambda4 corner_start(int g, const std::vector<Vec3>& q) {
   return start;
 }
 
-struct Piece {
-  std::vector<Vec3> q;
-  Corners corner;
-  int depth;
-};
-
 }  // namespace
 
 TetrahedronLocation locate(int g, std::span<const Vec3> control, const Vec3& p, double tolerance) {
@@ -155,6 +147,13 @@ TetrahedronLocation locate(int g, std::span<const Vec3> control, const Vec3& p, 
     return finish(Location::inside, found.lambda);
   Lambda4 nearest = found.converged ? found.lambda : middle;
 
+  constexpr int max_depth = 90;  // bisections
+  constexpr int max_pieces = 4000;
+  struct Piece {
+    std::vector<Vec3> q;
+    std::array<Lambda4, 4> corner;
+    int depth;
+  };
   Piece whole{q, {}, 0};
   for (std::size_t i = 0; i < 4; ++i) {
     whole.corner[i].fill(-tolerance);

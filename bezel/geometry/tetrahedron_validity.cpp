@@ -17,11 +17,8 @@ namespace bezel {
 namespace {
 
 using bernstein::tetrahedron::kernel::Bisection;
-using Corners = std::array<Lambda4, 4>;
-constexpr Corners whole{Lambda4{1, 0, 0, 0}, Lambda4{0, 1, 0, 0}, Lambda4{0, 0, 1, 0},
-                        Lambda4{0, 0, 0, 1}};
-constexpr int max_depth = 60;  // bisections
-constexpr int max_pieces = 20000;
+constexpr std::array<Lambda4, 4> whole_tetrahedron{Lambda4{1, 0, 0, 0}, Lambda4{0, 1, 0, 0},
+                                                   Lambda4{0, 0, 1, 0}, Lambda4{0, 0, 0, 1}};
 constexpr std::size_t max_exact = 32;
 
 /// The determinant at lambda, whose entries are taken as exact and sum to 1.
@@ -69,12 +66,6 @@ class ExactSigns {
   int g_;
   std::span<const Vec3> control_;
   std::vector<Lambda4> seen_;
-};
-
-struct Piece {
-  std::vector<double> c;
-  Corners corner;
-  int depth;
 };
 
 double least(const std::vector<double>& c) {
@@ -126,8 +117,8 @@ TetrahedronValidity check_validity(int g, std::span<const Vec3> control) {
   for (const double c : det) largest = std::max(largest, std::fabs(c));
 
   ExactSigns exact(g, control);
-  TetrahedronValidity result{Validity::valid, g == 1 ? Lambda4{0.25, 0.25, 0.25, 0.25} : whole[0],
-                             det[0]};
+  TetrahedronValidity result{
+      Validity::valid, g == 1 ? Lambda4{0.25, 0.25, 0.25, 0.25} : whole_tetrahedron[0], det[0]};
   const auto finish = [&](Validity status) {
     result.status = status;
     result.det = std::scalbn(result.det, 3 * exponent);
@@ -137,7 +128,7 @@ TetrahedronValidity check_validity(int g, std::span<const Vec3> control) {
     for (std::size_t c = 0; c < 4 && d > 0; ++c) {
       const double value =
           det[static_cast<std::size_t>(bernstein::tetrahedron_corner(d, static_cast<int>(c)))];
-      if (value < result.det) result = {Validity::valid, whole[c], value};
+      if (value < result.det) result = {Validity::valid, whole_tetrahedron[c], value};
     }
     return finish(Validity::valid);
   }
@@ -149,8 +140,15 @@ TetrahedronValidity check_validity(int g, std::span<const Vec3> control) {
   }
 
   const Bisection bisection(d);
+  constexpr int max_depth = 60;  // bisections
+  constexpr int max_pieces = 20000;
+  struct Piece {
+    std::vector<double> c;
+    std::array<Lambda4, 4> corner;
+    int depth;
+  };
   std::vector<Piece> stack;
-  stack.push_back({std::move(det), whole, 0});
+  stack.push_back({std::move(det), whole_tetrahedron, 0});
   Validity status = Validity::valid;
   int pieces = 0;
   while (!stack.empty()) {

@@ -9,15 +9,13 @@
 #include "bezel/geometry/curve_incidence.hpp"
 #include "bezel/geometry/curve_kernel.hpp"
 #include "bezel/numeric/box.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::geometry_kernel {
 namespace {
 
-constexpr double u = 0x1p-53;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using short_names::at;
+using short_names::u;
 
 bool is_corner(const BoundaryPlace& p) {
   return p.s == 0.0;

@@ -6,13 +6,12 @@
 
 #include "bezel/geometry/curve_kernel.hpp"
 #include "bezel/geometry/curved_polygon_builder.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::geometry_kernel {
 namespace {
 
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
+using short_names::at;
 
 /// The end of a side that begins at `start` and ends at the place `end`; -1 when it does not.
 double end_on_side(const BoundaryPlace& start, const BoundaryPlace& end) {

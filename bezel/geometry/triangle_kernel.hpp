@@ -33,10 +33,13 @@ void bisect(int d, const Value* b, Value* first, Value* second) {
   }
 }
 
-/// The corners of the children of `bisect`, in the parent's barycentrics.
-inline void bisect_corners(const std::array<std::array<double, 3>, 3>& corner,
-                           std::array<std::array<double, 3>, 3>& first,
-                           std::array<std::array<double, 3>, 3>& second) {
+/// The barycentrics of a piece's corners in the whole triangle.
+using TriangleCorners = std::array<std::array<double, 3>, 3>;
+inline constexpr TriangleCorners whole_triangle{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+
+/// The corners of the children of `bisect`.
+inline void bisect_corners(const TriangleCorners& corner, TriangleCorners& first,
+                           TriangleCorners& second) {
   std::array<double, 3> middle{};
   for (std::size_t i = 0; i < 3; ++i) middle[i] = 0.5 * (corner[0][i] + corner[1][i]);
   first = {corner[2], corner[0], middle};

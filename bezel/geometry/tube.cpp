@@ -5,17 +5,16 @@
 #include <cstddef>
 #include <utility>
 
+#include "bezel/numeric/short_names.hpp"
+
 namespace bezel::geometry_kernel {
 namespace {
 
-constexpr double u = 0x1p-53;
-constexpr double up = 1.0 + 0x1p-40;  // covers the rounding of a few hundred operations
-constexpr int finest_level = 12;      // halvings of a node's interval
-constexpr int most_halvings = 60;
+using short_names::at;
+using short_names::u;
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+constexpr int finest_level = 12;  // halvings of a node's interval
+constexpr int most_halvings = 60;
 
 std::vector<double> rounded(const Polynomial& p) {
   std::vector<double> out;

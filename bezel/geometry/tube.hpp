@@ -15,6 +15,9 @@
 
 namespace bezel::geometry_kernel {
 
+/// Covers the rounding of a few hundred operations.
+inline constexpr double up = 1.0 + 0x1p-40;
+
 /// A common point that the exact stage has found.
 struct ResolvedRoot {
   double s, t;

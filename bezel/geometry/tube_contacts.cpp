@@ -10,8 +10,7 @@
 namespace bezel::geometry_kernel {
 namespace {
 
-constexpr double up = 1.0 + 0x1p-40;  // covers the rounding of a few hundred operations
-constexpr int most_order = 100;       // of contact, looked for
+constexpr int most_order = 100;  // of contact, looked for
 
 /// The simplest fraction in the interval when it is simple for the interval's width: among random
 /// fractions one as simple would be rare.

@@ -16,10 +16,8 @@ namespace bezel {
 namespace {
 
 using geometry_kernel::JacobianTable;
-using Corners = std::array<Lambda, 3>;
-constexpr Corners whole{Lambda{1, 0, 0}, Lambda{0, 1, 0}, Lambda{0, 0, 1}};
-constexpr int max_depth = 40;  // bisections
-constexpr int max_pieces = 20000;
+using geometry_kernel::TriangleCorners;
+using geometry_kernel::whole_triangle;
 
 /// x1 y2 - x2 y1 with one final rounding [Kahan; Jeannerod, Louvet, Muller 2013].
 double cross_accurate(const Vec2& a, const Vec2& b) {
@@ -76,9 +74,9 @@ ValidityResult check_validity(int g, std::span<const Vec2> control) {
   const double terms = bernstein::triangle_size(g - 1) + 8;
   const double unit_error = 2 * u * g * g * terms;  // of differences of 1
 
-  ValidityResult result{Validity::valid, whole[0], det[0]};
+  ValidityResult result{Validity::valid, whole_triangle[0], det[0]};
   // The three corner coefficients are values of the determinant.
-  const auto note_corners = [&](std::span<const double> c, const Corners& corners) {
+  const auto note_corners = [&](std::span<const double> c, const TriangleCorners& corners) {
     for (int corner = 0; corner < 3; ++corner) {
       const double value = c[static_cast<std::size_t>(bernstein::triangle_corner(d, corner))];
       if (value < result.det) {
@@ -88,7 +86,7 @@ ValidityResult check_validity(int g, std::span<const Vec2> control) {
     }
   };
   if (*std::min_element(det.begin(), det.end()) > unit_error * at_most * at_most) {
-    note_corners(det, whole);  // nearly all elements
+    note_corners(det, whole_triangle);  // nearly all elements
     return result;
   }
   const double widest = widest_step(has_table ? JacobianTable::of(g) : JacobianTable(g), control);
@@ -96,13 +94,15 @@ ValidityResult check_validity(int g, std::span<const Vec2> control) {
   double largest = 0;
   for (const double c : det) largest = std::max(largest, std::fabs(c));
 
+  constexpr int max_depth = 40;  // bisections
+  constexpr int max_pieces = 20000;
   struct Piece {
     std::vector<double> c;
-    Corners corner;
+    TriangleCorners corner;
     int depth;
   };
   std::vector<Piece> stack;
-  stack.push_back({{det.begin(), det.end()}, whole, 0});
+  stack.push_back({{det.begin(), det.end()}, whole_triangle, 0});
   int pieces = 0;
   while (!stack.empty()) {
     Piece piece = std::move(stack.back());

@@ -10,6 +10,7 @@
 #include "bezel/base/error.hpp"
 #include "bezel/base/parallel.hpp"
 #include "bezel/bernstein/triangle.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::files {
 namespace {
@@ -17,12 +18,9 @@ namespace {
 using bernstein::Lambda;
 using bernstein::triangle_multi_index;
 using bernstein::triangle_size;
+using short_names::at;
 
 constexpr double believable = 1e-8;  // relative; rounding of all conversions stays below 1e-10
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 Lambda lattice_point(int d, int n) {
   const auto index = triangle_multi_index(d, n);

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int version = 1;
+constexpr int metadata_version = 1;
 
 int checked_int(const json& value, int lowest, int highest, const char* what) {
   if (!value.is_number_integer())
@@ -81,7 +81,7 @@ Metadata describe(const Dataset& data) {
 
 std::string to_json(const Metadata& metadata) {
   json j;
-  j["bezel"] = version;
+  j["bezel"] = metadata_version;
   j["degree"] = metadata.degree;
   if (metadata.time) j["time"] = *metadata.time;
   j["groups"] = json::array();
@@ -127,7 +127,7 @@ Metadata metadata_from_json(std::string_view text) {
   try {
     const json j = json::parse(text);
     Metadata metadata;
-    checked_int(j.at("bezel"), version, version, "version");
+    checked_int(j.at("bezel"), metadata_version, metadata_version, "version");
     metadata.degree = checked_int(j.at("degree"), 1, TriangleMesh::max_degree, "geometric degree");
     if (j.contains("time")) {
       metadata.time = j.at("time").get<double>();

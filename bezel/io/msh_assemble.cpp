@@ -13,15 +13,13 @@
 #include "bezel/io/msh_content.hpp"
 #include "bezel/io/nodal.hpp"
 #include "bezel/io/node_order.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::files {
 namespace {
 
 using bernstein::triangle_size;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using short_names::at;
 
 constexpr std::size_t none = ~std::size_t{0};
 
@@ -66,9 +64,9 @@ void keep(std::vector<T>& values, const std::vector<std::size_t>& which, std::si
   values = std::move(kept);
 }
 
-class Assembler {
+class MshAssembler {
  public:
-  Assembler(const std::string& path, std::string_view bytes, MshContent content)
+  MshAssembler(const std::string& path, std::string_view bytes, MshContent content)
       : at_(bytes, path), content_(std::move(content)), nodes_(content_.node_tags) {}
 
   Dataset assemble() {
@@ -561,7 +559,7 @@ class Assembler {
 }  // namespace
 
 Dataset assemble_msh(const std::string& path, std::string_view bytes, MshContent content) {
-  return Assembler(path, bytes, std::move(content)).assemble();
+  return MshAssembler(path, bytes, std::move(content)).assemble();
 }
 
 }  // namespace bezel::files

@@ -9,9 +9,9 @@
 namespace bezel::files {
 namespace {
 
-class Reader {
+class MshReader {
  public:
-  Reader(const std::string& path, std::string_view bytes) : in_(bytes, path) {}
+  MshReader(const std::string& path, std::string_view bytes) : in_(bytes, path) {}
 
   MshContent read() {
     format();
@@ -451,7 +451,7 @@ class Reader {
 }  // namespace
 
 Dataset read_msh(const std::string& path, std::string_view bytes) {
-  MshContent content = Reader(path, bytes).read();
+  MshContent content = MshReader(path, bytes).read();
   return assemble_msh(path, bytes, std::move(content));
 }
 

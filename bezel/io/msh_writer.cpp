@@ -14,20 +14,19 @@
 #include "bezel/io/msh.hpp"
 #include "bezel/io/nodal.hpp"
 #include "bezel/io/node_order.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::files {
 namespace {
 
 using bernstein::triangle_size;
+using short_names::at;
+
 using EntityKey = std::pair<int, int>;  // dim, tag
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-
-class Writer {
+class MshWriter {
  public:
-  Writer(const Dataset& data, Format format, std::vector<std::string>& lost)
+  MshWriter(const Dataset& data, Format format, std::vector<std::string>& lost)
       : data_(data),
         mesh_(*data.mesh),
         binary_(format == Format::msh22_binary || format == Format::msh41_binary),
@@ -480,7 +479,7 @@ class Writer {
 }  // namespace
 
 std::string write_msh(const Dataset& data, Format format, std::vector<std::string>& lost) {
-  return Writer(data, format, lost).write();
+  return MshWriter(data, format, lost).write();
 }
 
 }  // namespace bezel::files

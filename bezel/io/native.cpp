@@ -10,7 +10,7 @@
 namespace bezel::files {
 namespace {
 
-constexpr int version = 1;
+constexpr int native_version = 1;
 
 // Strings are quoted; \" \\ \n \r and \t are the only escapes.
 std::string quote(const std::string& text) {
@@ -31,11 +31,11 @@ std::string quote(const std::string& text) {
   return out + '"';
 }
 
-class Writer {
+class NativeWriter {
  public:
   std::string write(const Dataset& data) {
     const TriangleMesh& mesh = *data.mesh;
-    out_ = fmt::format("bezel {}\nmesh triangle degree {} nodes {} elements {}\n", version,
+    out_ = fmt::format("bezel {}\nmesh triangle degree {} nodes {} elements {}\n", native_version,
                        mesh.degree(), mesh.node_count(), mesh.element_count());
     for (const Vec2& p : mesh.control()) reals({p.x(), p.y()});
     for (std::size_t e = 0; e < mesh.element_count(); ++e) nodes("", mesh.nodes(ElementId(e)));
@@ -115,14 +115,14 @@ class Writer {
   std::string out_;
 };
 
-class Reader {
+class NativeReader {
  public:
-  Reader(const std::string& path, std::string_view bytes) : in_(bytes, path) {}
+  NativeReader(const std::string& path, std::string_view bytes) : in_(bytes, path) {}
 
   Dataset read() {
     in_.expect("bezel");
-    if (const std::int64_t v = in_.text_integer("the version"); v != version)
-      in_.fail(fmt::format("version {} is not supported, expected {}", v, version));
+    if (const std::int64_t v = in_.text_integer("the version"); v != native_version)
+      in_.fail(fmt::format("version {} is not supported, expected {}", v, native_version));
     Dataset data;
     data.mesh = mesh();
     if (in_.peek() == "time") {
@@ -345,11 +345,11 @@ class Reader {
 }  // namespace
 
 Dataset read_native(const std::string& path, std::string_view bytes) {
-  return Reader(path, bytes).read();
+  return NativeReader(path, bytes).read();
 }
 
 std::string write_native(const Dataset& data) {
-  return Writer().write(data);
+  return NativeWriter().write(data);
 }
 
 }  // namespace bezel::files

@@ -5,6 +5,7 @@
 
 #include "bezel/bernstein/interval.hpp"
 #include "bezel/bernstein/triangle.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::files {
 namespace {
@@ -13,10 +14,7 @@ using bernstein::triangle_corner;
 using bernstein::triangle_index;
 using bernstein::triangle_side_index;
 using bernstein::triangle_size;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using short_names::at;
 
 std::vector<double> convert_interval(std::span<const double> b, Conversion conversion) {
   return conversion == Conversion::to_nodal ? bernstein::to_lagrange<double>(b)

@@ -17,17 +17,15 @@
 #include "bezel/io/nodal.hpp"
 #include "bezel/io/node_order.hpp"
 #include "bezel/io/vtu_content.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::files {
 namespace {
 
 using bernstein::triangle_size;
+using short_names::at;
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-
-constexpr double believable = 1e-8;  // of the mesh's size, for metadata
+constexpr double metadata_tolerance = 1e-8;  // of the mesh's size
 
 struct CellKind {
   int type;
@@ -68,9 +66,9 @@ const CellKind* kind_of(std::int64_t type) {
   return nullptr;
 }
 
-class Assembler {
+class VtuAssembler {
  public:
-  Assembler(const std::string& path, VtuContent content)
+  VtuAssembler(const std::string& path, VtuContent content)
       : path_(path), content_(std::move(content)) {}
 
   Dataset assemble() {
@@ -272,7 +270,7 @@ class Assembler {
   }
 
   static bool same_geometry(const TriangleMesh& a, const TriangleMesh& b) {
-    const double tolerance = believable * b.box().diameter();
+    const double tolerance = metadata_tolerance * b.box().diameter();
     for (std::size_t i = 0; i < b.connectivity().size(); ++i)
       if (!(norm(a.control(a.connectivity()[i]) - b.control(b.connectivity()[i])) <= tolerance))
         return false;
@@ -476,7 +474,7 @@ class Assembler {
 }  // namespace
 
 Dataset assemble_vtu(const std::string& path, VtuContent content) {
-  return Assembler(path, std::move(content)).assemble();
+  return VtuAssembler(path, std::move(content)).assemble();
 }
 
 }  // namespace bezel::files

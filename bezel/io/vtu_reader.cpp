@@ -17,9 +17,9 @@
 namespace bezel::files {
 namespace {
 
-class Reader {
+class VtuReader {
  public:
-  Reader(const std::string& path, std::string_view bytes)
+  VtuReader(const std::string& path, std::string_view bytes)
       : path_(path), bytes_(bytes), document_(path, bytes) {}
 
   VtuContent read() {
@@ -361,7 +361,7 @@ class Reader {
 }  // namespace
 
 Dataset read_vtu(const std::string& path, std::string_view bytes) {
-  return assemble_vtu(path, Reader(path, bytes).read());
+  return assemble_vtu(path, VtuReader(path, bytes).read());
 }
 
 }  // namespace bezel::files

@@ -13,15 +13,13 @@
 #include "bezel/io/node_order.hpp"
 #include "bezel/io/vtu.hpp"
 #include "bezel/io/vtu_data.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::files {
 namespace {
 
 using bernstein::triangle_size;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using short_names::at;
 
 std::string escaped(const std::string& text) {
   std::string out;
@@ -43,9 +41,9 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-class Writer {
+class VtuWriter {
  public:
-  Writer(const Dataset& data, const WriteOptions& options, std::vector<std::string>& lost)
+  VtuWriter(const Dataset& data, const WriteOptions& options, std::vector<std::string>& lost)
       : data_(data), bezier_(options.bezier_cells), compress_(options.compress), lost_(lost) {}
 
   std::string write() {
@@ -276,7 +274,7 @@ class Writer {
 
 std::string write_vtu(const Dataset& data, const WriteOptions& options,
                       std::vector<std::string>& lost) {
-  return Writer(data, options, lost).write();
+  return VtuWriter(data, options, lost).write();
 }
 
 }  // namespace bezel::files

@@ -13,13 +13,12 @@
 #include "bezel/mesh/raised_nodes.hpp"
 #include "bezel/numeric/binomial.hpp"
 #include "bezel/numeric/quadrature.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::planar {
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using short_names::at;
 
 /// Interpolation at Gauss-Lobatto points of displacements that vanish at both ends.
 class Interpolation {

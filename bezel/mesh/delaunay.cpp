@@ -8,13 +8,12 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/mesh/predicates.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel {
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using short_names::at;
 
 /// Position of (x, y), each below 2^16, along a Hilbert curve.
 std::uint32_t hilbert(std::uint32_t x, std::uint32_t y) {

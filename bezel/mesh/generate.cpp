@@ -7,18 +7,16 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/mesh/planar.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel {
 namespace {
 
 using planar::Domain;
 using planar::Triangulation;
+using short_names::at;
 
 constexpr double pi = 3.14159265358979323846;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::string text(double x) {
   std::string s(32, '\0');

@@ -7,13 +7,12 @@
 
 #include "bezel/mesh/delaunay.hpp"
 #include "bezel/mesh/morton.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::planar {
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using short_names::at;
 
 /// Buckets of side r: points closer than r to a place lie in its bucket or the eight around it.
 class Buckets {

@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "bezel/numeric/eft.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel {
 namespace {
 
-constexpr double u = 0x1p-53;
+using short_names::u;
 
 /// An exact real number: the sum of doubles that do not overlap, ascending in magnitude, none zero
 /// [shewchuk1997, sec. 2]. Its sign is that of the last one.

@@ -12,13 +12,12 @@
 #include "bezel/mesh/edge_finder.hpp"
 #include "bezel/mesh/generate.hpp"
 #include "bezel/numeric/binomial.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel {
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using short_names::at;
 
 /// A new control point as a combination of an element's old ones. The weights are dyadic and sum
 /// to 1.

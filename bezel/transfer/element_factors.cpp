@@ -76,7 +76,7 @@ void divide_factor(std::size_t n, const double* lower, const double* inverse, do
 
 /// Calls body(begin, end) for ranges of elements, whole blocks each.
 template <class Body>
-void for_blocks(std::size_t n, int threads, const Body& body) {
+void for_block_ranges(std::size_t n, int threads, const Body& body) {
   constexpr std::size_t step = 32 * width;
   parallel_for((n + step - 1) / step,
                [&](std::size_t i) { body(i * step, std::min(n, (i + 1) * step)); }, threads);
@@ -145,7 +145,7 @@ void ElementFactors::factorise(const Space& space, const Field* weight, int thre
   }
   lower_.assign(blocks_ * packed_size(n), 0.0);
   inverse_.assign(blocks_ * n * width, 1.0);
-  for_blocks(elements_, threads, [&](std::size_t from, std::size_t to) {
+  for_block_ranges(elements_, threads, [&](std::size_t from, std::size_t to) {
     std::vector<double> matrix(n * n);
     std::vector<double> factor(points, 1.0);
     std::vector<Vec2> control(static_cast<std::size_t>(mesh.nodes_per_element()));

@@ -4,26 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "bezel/base/parallel.hpp"
 #include "bezel/bernstein/ceiling.hpp"
 #include "bezel/field/element_range.hpp"
+#include "bezel/numeric/short_names.hpp"
 
 namespace bezel::detail {
 namespace {
 
-constexpr double u = 0x1p-53;
-constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Certified ranges are searched to this fraction of the polynomial's size: below it is rounding.
-constexpr double range_tolerance = 1e-13;
+using short_names::infinity;
+using short_names::u;
+
 /// A frame's barycentrics reach 1e-14 below 0 on its element: a polynomial of degree 10 may leave
 /// its coefficients' range by less than this fraction of the largest.
 constexpr double outside_frame = 1e-12;
 /// A mass that does not fit by less than this fraction is rounding.
 constexpr double mass_rounding = 1e-13;
-/// Changes below this fraction of the field's largest coefficient are rounding and are not counted.
-constexpr double counted_change = 1e-12;
 
 void for_chunks(std::size_t n, int threads, const std::function<void(std::size_t)>& body) {
   constexpr std::size_t chunk = 32;

@@ -13,6 +13,11 @@
 
 namespace bezel::detail {
 
+/// Certified ranges are searched to this fraction of the polynomial's size: below it is rounding.
+inline constexpr double range_tolerance = 1e-13;
+/// Changes below this fraction of the field's largest coefficient are rounding and are not counted.
+inline constexpr double counted_change = 1e-12;
+
 /// What messages call it: "field 'u', component 1".
 std::string component_name(const Field& field, int component);
 

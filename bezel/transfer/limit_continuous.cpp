@@ -2,20 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "bezel/base/parallel.hpp"
 #include "bezel/bernstein/ceiling.hpp"
+#include "bezel/numeric/short_names.hpp"
 #include "bezel/numeric/sum.hpp"
 
 namespace bezel::detail {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using short_names::infinity;
+
 /// Of the largest value: excesses that are rounding. Removing them would spoil their neighbours.
 constexpr double rounding = 1e-14;
-/// Certified maxima are searched to this fraction of the coefficients' size.
-constexpr double range_tolerance = 1e-13;
 /// Sweeps in which alpha follows the ranges, before Zalesak's limiter takes over where they still
 /// leave the bounds.
 constexpr int range_sweeps = 12;
@@ -23,7 +22,6 @@ constexpr int range_sweeps = 12;
 constexpr int last_sweep = 40;
 /// Alpha is reduced by this much more than one element alone needs, as its neighbours' change too.
 constexpr double margin = 1.25;
-constexpr double counted_change = 1e-12;
 
 class ContinuousLimiter {
  public:

@@ -15,7 +15,7 @@ namespace {
 
 /// Of the largest coefficient: how far a range may exceed the true one. Maxima along whole curves
 /// would take thousands of pieces at 1e-13; constants are exact anyway.
-constexpr double range_tolerance = 1e-10;
+constexpr double local_range_tolerance = 1e-10;
 /// Elements that share less than this fraction of the smaller one only touch.
 constexpr double touching = 1e-13;
 
@@ -93,7 +93,7 @@ ValueBounds ElementBounds::local(const Field& donor, int component) const {
         double size = 0.0;
         for (std::size_t i = static_cast<std::size_t>(component); i < c.size(); i += nc)
           size = std::max(size, std::abs(c[i]));
-        range[e] = element_range(donor, ElementId(e), component, range_tolerance * size);
+        range[e] = element_range(donor, ElementId(e), component, local_range_tolerance * size);
       },
       threads_);
   constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -22,7 +22,7 @@ bool is_available(MassMethod method) {
 namespace bezel::detail {
 namespace {
 
-constexpr std::size_t width = ElementFactors::width;
+constexpr std::size_t block_width = ElementFactors::width;
 constexpr std::size_t blocks_per_task = 32;
 constexpr std::size_t dofs_per_task = 2048;
 
@@ -96,10 +96,11 @@ void ContinuousMass::by_elements(const Source& source, const Work& work, std::sp
   for_ranges(factors_.block_count(), blocks_per_task, threads_,
              [&](std::size_t from, std::size_t to) {
                for (std::size_t b = from; b < to; ++b) {
-                 double* v = local_.data() + b * size_ * width;
-                 for (std::size_t lane = 0; lane < width && b * width + lane < elements_; ++lane) {
+                 double* v = local_.data() + b * size_ * block_width;
+                 for (std::size_t lane = 0;
+                      lane < block_width && b * block_width + lane < elements_; ++lane) {
                    for (std::size_t i = 0; i < size_; ++i)
-                     v[i * width + lane] = source(b * width + lane, i);
+                     v[i * block_width + lane] = source(b * block_width + lane, i);
                  }
                  work(b, v);
                }
@@ -130,10 +131,10 @@ void ContinuousMass::precondition(std::span<const double> r, std::span<double> z
   by_elements([&](std::size_t e,
                   std::size_t i) { return r[static_cast<std::size_t>(dofs[e * size_ + i])]; },
               [&](std::size_t b, double* v) {
-                const double* share = share_.data() + b * size_ * width;
-                for (std::size_t i = 0; i < size_ * width; ++i) v[i] *= share[i];
+                const double* share = share_.data() + b * size_ * block_width;
+                for (std::size_t i = 0; i < size_ * block_width; ++i) v[i] *= share[i];
                 factors_.divide(b, v);
-                for (std::size_t i = 0; i < size_ * width; ++i) v[i] *= share[i];
+                for (std::size_t i = 0; i < size_ * block_width; ++i) v[i] *= share[i];
               },
               z);
 }
@@ -141,8 +142,8 @@ void ContinuousMass::precondition(std::span<const double> r, std::span<double> z
 void ContinuousMass::average(std::span<const double> c, std::span<double> x) {
   by_elements([&](std::size_t e, std::size_t i) { return c[e * size_ + i]; },
               [&](std::size_t b, double* v) {
-                const double* share = share_.data() + b * size_ * width;
-                for (std::size_t i = 0; i < size_ * width; ++i) v[i] *= share[i];
+                const double* share = share_.data() + b * size_ * block_width;
+                for (std::size_t i = 0; i < size_ * block_width; ++i) v[i] *= share[i];
               },
               x);
 }

@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t largest_neighbourhood = 256;
 /// Excesses below this fraction of the largest value are rounding, in the values or in the sums
 /// they come from.
-constexpr double rounding = 1e-13;
+constexpr double excess_rounding = 1e-13;
 
 /// A sum changes by this fraction of the sum of sizes when it is rounded.
 constexpr double negligible = 0x1p-51;
@@ -88,7 +88,7 @@ Redistribution redistribute(std::span<double> value, std::span<const double> wei
       done.moved += excess;
       value[i] = side.limit(i);
       bool placed = false;
-      if (excess > rounding * scale * weight[i]) {
+      if (excess > excess_rounding * scale * weight[i]) {
         around.start(static_cast<std::int32_t>(i));
         while (!placed && around.grow()) {
           double room = 0.0;

@@ -22,11 +22,7 @@ using clock = std::chrono::steady_clock;
 
 /// Donor area outside the target, and target area without donor for Conserve::total, below this
 /// fraction of the element is rounding of the sums.
-constexpr double outside_rounding = 3e-14;
-
-double seconds_since(clock::time_point start) {
-  return std::chrono::duration<double>(clock::now() - start).count();
-}
+constexpr double area_rounding = 3e-14;
 
 struct Worker {
   Worker(const OverlayMesh& donor, const OverlayMesh& target, const FrontSearch& search,
@@ -173,7 +169,7 @@ std::vector<ChunkResult> sweep_elements(const OverlayMesh& donor, const OverlayM
           for (std::size_t c = 0; c < components; ++c) result.made[c] += made_here[c];
           if (options.conserve == Conserve::total &&
               outcome.uncovered_area >
-                  outside_rounding * target.element_area[static_cast<std::size_t>(t)])
+                  area_rounding * target.element_area[static_cast<std::size_t>(t)])
             result.element_made.add(t, made_here);
           solve += outcome.solve_seconds;
           result.counts.pairs += outcome.pairs;
@@ -275,7 +271,7 @@ Swept balance(std::span<const ChunkResult> chunks, std::span<const double> donor
 
   for (std::size_t d = 0; d < donor_area.size(); ++d) {
     const double rest = donor_area[d] - given_area[d];
-    if (rest <= outside_rounding * donor_area[d]) continue;
+    if (rest <= area_rounding * donor_area[d]) continue;
     // Not near the target's boundary: rounding, which shows in the mass.
     if (given_area[d] != 0.0 && swept.mass_row[d] < 0) continue;
     report.outside_area += rest;

@@ -1,6 +1,7 @@
 #pragma once
 // Internal: a pass over target elements, and the balance of what it moved.
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -17,6 +18,10 @@
 #include "bezel/transfer/transfer.hpp"
 
 namespace bezel::detail {
+
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 /// Target elements worked on together: edges inside a chunk are intersected once, edges between two
 /// chunks twice (with the same result), and nothing else is remembered.

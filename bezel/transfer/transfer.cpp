@@ -22,10 +22,7 @@ namespace bezel {
 namespace {
 
 using clock = std::chrono::steady_clock;
-
-double seconds_since(clock::time_point start) {
-  return std::chrono::duration<double>(clock::now() - start).count();
-}
+using detail::seconds_since;
 
 /// Donor fields that can be integrated together, and where their components go.
 struct Plan {

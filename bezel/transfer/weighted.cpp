@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "bezel/base/parallel.hpp"
+#include "bezel/numeric/short_names.hpp"
 #include "bezel/numeric/sum.hpp"
 #include "bezel/transfer/element_mass.hpp"
 #include "bezel/transfer/layout.hpp"
@@ -20,15 +21,13 @@
 namespace bezel::detail {
 namespace {
 
+using short_names::at;
+
 // Conservation element by element and in all, and constants: the product of a mapped field with the
 // weight is split, element by element, into the field's mean times the weight, which is a
 // polynomial in x and y and integrated exactly, and the rest. All mapped products have one degree,
 // so that one rule integrates them: a field that is a constant times the density gives exactly the
 // constant times what the density gives.
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// The donor's side: products to transfer, and what they stand for.
 class Products {

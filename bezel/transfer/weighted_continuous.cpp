@@ -6,6 +6,7 @@
 
 #include "bezel/base/error.hpp"
 #include "bezel/base/parallel.hpp"
+#include "bezel/numeric/short_names.hpp"
 #include "bezel/numeric/sum.hpp"
 #include "bezel/transfer/element_mass.hpp"
 #include "bezel/transfer/sweep.hpp"
@@ -14,9 +15,7 @@
 namespace bezel::detail {
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using short_names::at;
 
 /// The product of the weights as one field, empty without any.
 std::optional<Field> whole_weight(std::span<const Field* const> weights) {

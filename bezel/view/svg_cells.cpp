@@ -15,7 +15,7 @@ constexpr double flat_range = 0.003;       // of t: less cannot be seen
 constexpr double smallest = 2.0;           // pixels
 constexpr int deepest = 6;
 constexpr std::size_t most_cells = 20000;
-constexpr int lattice = 4;  // samples per side that judge a cell
+constexpr int cell_lattice = 4;  // samples per side that judge a cell
 
 class Cutter {
  public:
@@ -24,10 +24,11 @@ class Cutter {
         tolerance_(tolerance),
         scalar_(*paint.field, paint.component),
         degree_(paint.field->mesh().degree()) {
-    for (int k = 0; k <= lattice; ++k)
-      for (int j = 0; j <= lattice - k; ++j)
-        local_.push_back({static_cast<double>(lattice - j - k) / lattice,
-                          static_cast<double>(j) / lattice, static_cast<double>(k) / lattice});
+    for (int k = 0; k <= cell_lattice; ++k)
+      for (int j = 0; j <= cell_lattice - k; ++j)
+        local_.push_back({static_cast<double>(cell_lattice - j - k) / cell_lattice,
+                          static_cast<double>(j) / cell_lattice,
+                          static_cast<double>(k) / cell_lattice});
     lambda_.resize(local_.size());
     pixel_.resize(local_.size());
     plane_.resize(local_.size());
@@ -71,7 +72,7 @@ class Cutter {
   }
 
   // The plane through the values at the corners; returns how far it is from the field at the
-  // lattice.
+  // cell_lattice.
   double fit(std::span<const Vec2> net, const std::array<Lambda, 3>& corner, Cell& cell) {
     for (std::size_t q = 0; q < local_.size(); ++q) {
       for (std::size_t c = 0; c < 3; ++c)
@@ -90,7 +91,7 @@ class Cutter {
     cell.t = 0.5 * (lo + hi);
     cell.flat = hi - lo <= flat_range;
     if (cell.flat) return 0.0;
-    const std::size_t b = lattice, c = local_.size() - 1;
+    const std::size_t b = cell_lattice, c = local_.size() - 1;
     const Vec2 db = pixel_[b] - pixel_[0], dc = pixel_[c] - pixel_[0];
     const double det = cross(db, dc);
     if (std::abs(det) < 1e-3 * std::max(dot(db, db), dot(dc, dc))) {
