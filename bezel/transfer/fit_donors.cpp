@@ -6,8 +6,6 @@
 namespace bezel::detail {
 namespace {
 
-/// Gauss points on a curve that is pulled back by an inverse map, beyond what a polynomial needs.
-constexpr int pulled_extra = 1;
 /// Places for donor elements whose maps are kept.
 constexpr std::size_t kept_donors = 256;
 

@@ -31,6 +31,8 @@ struct FitDonor {
                              ///< the reference triangle
 };
 
+/// Gauss points on a curve that is pulled back by an inverse map, beyond what a polynomial needs.
+inline constexpr int pulled_extra = 1;
 /// A reference triangle's bounding box lies in the box of this half around its centroid.
 inline constexpr double reference_half = 2.0 / 3.0;
 

@@ -11,9 +11,7 @@
 namespace bezel::detail {
 namespace {
 
-/// Gauss points on a curve that is pulled back by an inverse map, beyond what a polynomial needs.
-constexpr int pulled_extra = 1;
-/// ... where nothing else is inexact.
+/// As pulled_extra, where nothing else is inexact.
 constexpr int pulled_extra_plane = 2;
 /// Degrees beyond the donor's own that the composition of a mapped donor with another map gets,
 /// and more where that is not enough.
