@@ -26,6 +26,28 @@ struct AreaMap {
   /// The gradient of a linear function there from the one here.
   /// @accuracy each coordinate within 2 u of itself for the gradient as given
   Vec2 gradient(const Vec2& g) const;
+  /// A step between two points there from the one here, and back: the linear part of the map, which
+  /// a double-double carries out to its own rounding.
+  template <class Scalar>
+  Vec<2, Scalar> step(const Vec<2, Scalar>& d) const {
+    if (identity) return d;
+    const Scalar u = turned ? d.y() : d.x(), v = turned ? -d.x() : d.y();
+    return {{u * Scalar(1.0 / stretch), (v - Scalar(slope) * u) * Scalar(stretch)}};
+  }
+  template <class Scalar>
+  Vec<2, Scalar> step_back(const Vec<2, Scalar>& d) const {
+    if (identity) return d;
+    const Scalar u = d.x() * Scalar(stretch);
+    const Scalar v = d.y() * Scalar(1.0 / stretch) + Scalar(slope) * u;
+    return turned ? Vec<2, Scalar>{{-v, u}} : Vec<2, Scalar>{{u, v}};
+  }
+  /// As gradient() above, in the arithmetic of the scalar.
+  template <class Scalar>
+  Vec<2, Scalar> gradient(const Vec<2, Scalar>& g) const {
+    if (identity) return g;
+    const Scalar u = turned ? g.y() : g.x(), v = turned ? -g.x() : g.y();
+    return {{(u + Scalar(slope) * v) * Scalar(stretch), v * Scalar(1.0 / stretch)}};
+  }
   /// By how much the rounding of coordinates of this size here moves points there.
   double rounding(double largest_coordinate) const;
 };

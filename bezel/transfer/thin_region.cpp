@@ -14,13 +14,8 @@ DoubleDouble difference(double a, double b) {
   return {d.value, d.error};
 }
 
-/// By a power of two.
-DoubleDouble scaled(const DoubleDouble& a, double by) {
-  return {a.hi * by, a.lo * by};
-}
-
-double rounded(const DoubleDouble& a) {
-  return static_cast<double>(a);
+Vec2 rounded(const Vec<2, DoubleDouble>& a) {
+  return {{static_cast<double>(a.x()), static_cast<double>(a.y())}};
 }
 
 std::vector<Vec2> given_element(const OverlayMesh& mesh, std::int32_t e) {
@@ -58,18 +53,12 @@ bool is_flat_as_given(const OverlayMesh& mesh, std::int32_t e) {
 }
 
 ThinRegion::Exact ThinRegion::from_centre(const Vec2& p) const {
-  return {difference(p.x(), centre_.x()), difference(p.y(), centre_.y())};
-}
-
-ThinRegion::Exact ThinRegion::moved(const AreaMap& map, const Exact& p) {
-  if (map.identity) return p;
-  const DoubleDouble u = map.turned ? p.y : p.x, v = map.turned ? -p.x : p.y;
-  return {scaled(u, 1.0 / map.stretch), scaled(v - DoubleDouble(map.slope) * u, map.stretch)};
+  return {{difference(p.x(), centre_.x()), difference(p.y(), centre_.y())}};
 }
 
 ThinRegion::Exact ThinRegion::mix(const Exact& a, const Exact& b, double s) {
   const DoubleDouble t(s), rest = difference(1.0, s);
-  return {rest * a.x + t * b.x, rest * a.y + t * b.y};
+  return {{rest * a.x() + t * b.x(), rest * a.y() + t * b.y()}};
 }
 
 void ThinRegion::begin(std::int32_t t, std::int32_t d, std::span<const Segment> run,
@@ -93,7 +82,7 @@ void ThinRegion::begin(std::int32_t t, std::int32_t d, std::span<const Segment> 
 void ThinRegion::append(const OverlayMesh& mesh, const Part& part, std::vector<Vec2>& out) {
   exact_.clear();
   for (const NodeId n : mesh.mesh->edge_nodes(EdgeId(part.edge)))
-    exact_.push_back(moved(map_, from_centre(mesh.given(n))));
+    exact_.push_back(map_.step(from_centre(mesh.given(n))));
   const std::size_t count = exact_.size();
   for (std::size_t i = 0; i < count; ++i) {
     blossom_ = exact_;
@@ -102,24 +91,16 @@ void ThinRegion::append(const OverlayMesh& mesh, const Part& part, std::vector<V
       for (std::size_t k = 0; k + level < count; ++k)
         blossom_[k] = mix(blossom_[k], blossom_[k + 1], s);
     }
-    out.push_back({{rounded(blossom_[0].x), rounded(blossom_[0].y)}});
+    out.push_back(rounded(blossom_[0]));
   }
 }
 
-// Gradients move by the inverse transposed map.
 LinearPlace ThinRegion::place(const std::array<DoubleDouble, 2>& at,
                               const std::array<Exact, 2>& gradient) const {
   LinearPlace place{};
   for (std::size_t k = 0; k < 2; ++k) {
-    place.at[k] = rounded(at[k]);
-    const Exact& g = gradient[k];
-    if (map_.identity) {
-      place.gradient[k] = {{rounded(g.x), rounded(g.y)}};
-      continue;
-    }
-    const DoubleDouble u = map_.turned ? g.y : g.x, v = map_.turned ? -g.x : g.y;
-    place.gradient[k] = {
-        {rounded(u + DoubleDouble(map_.slope) * v) * map_.stretch, rounded(v) / map_.stretch}};
+    place.at[k] = static_cast<double>(at[k]);
+    place.gradient[k] = rounded(map_.gradient(gradient[k]));
   }
   return place;
 }
@@ -129,21 +110,19 @@ LinearPlace ThinRegion::place_in(const OverlayMesh& mesh, std::int32_t element) 
   const auto g = static_cast<std::size_t>(mesh.degree);
   const Exact p = from_centre(mesh.given(nodes[0])), p1 = from_centre(mesh.given(nodes[g])),
               p2 = from_centre(mesh.given(nodes.back()));
-  const Exact a{p1.x - p.x, p1.y - p.y}, b{p2.x - p.x, p2.y - p.y};
-  const auto cross_of = [](const Exact& m, const Exact& n) { return m.x * n.y - m.y * n.x; };
-  const DoubleDouble det = cross_of(a, b);
-  return place({cross_of(b, p) / det, cross_of(p, a) / det},
-               {Exact{b.y / det, -b.x / det}, Exact{-a.y / det, a.x / det}});
+  const Exact a = p1 - p, b = p2 - p;
+  const DoubleDouble det = cross(a, b);
+  return place({cross(b, p) / det, cross(p, a) / det},
+               {Exact{{b.y() / det, -b.x() / det}}, Exact{{-a.y() / det, a.x() / det}}});
 }
 
 LinearPlace ThinRegion::place_in(const Frame& frame) const {
-  const Exact offset{difference(centre_.x(), frame.centre.x()),
-                     difference(centre_.y(), frame.centre.y())};
+  const Exact offset = -from_centre(frame.centre);
   std::array<DoubleDouble, 2> at;
   std::array<Exact, 2> gradient;
   for (std::size_t k = 0; k < 2; ++k) {
-    gradient[k] = {frame.gradient[k + 1].x(), frame.gradient[k + 1].y()};
-    at[k] = DoubleDouble(1.0 / 3.0) + gradient[k].x * offset.x + gradient[k].y * offset.y;
+    gradient[k] = {{frame.gradient[k + 1].x(), frame.gradient[k + 1].y()}};
+    at[k] = DoubleDouble(1.0 / 3.0) + gradient[k].x() * offset.x() + gradient[k].y() * offset.y();
   }
   return place(at, gradient);
 }
@@ -152,26 +131,13 @@ void ThinRegion::bring(const OverlayMesh& mesh, std::int32_t element, MappedElem
   const std::vector<Vec2> given = given_element(mesh, element);
   out.map = round_map(given);
   out.control.clear();
-  for (const Vec2& p : given) {
-    const Exact there = moved(out.map, from_centre(p));
-    out.control.push_back({{rounded(there.x), rounded(there.y)}});
-  }
-  for (int k = 0; k < 2; ++k) {
-    Exact unit{k == 0 ? 1.0 : 0.0, k == 0 ? 0.0 : 1.0};
-    if (!map_.identity) {
-      const DoubleDouble u = scaled(unit.x, map_.stretch);
-      const DoubleDouble v = scaled(unit.y, 1.0 / map_.stretch) + DoubleDouble(map_.slope) * u;
-      unit = map_.turned ? Exact{-v, u} : Exact{u, v};
-    }
-    const Exact image = moved(out.map, unit);
-    out.from_region[static_cast<std::size_t>(k)] = {{rounded(image.x), rounded(image.y)}};
-  }
+  for (const Vec2& p : given) out.control.push_back(rounded(out.map.step(from_centre(p))));
+  out.from_region = {rounded(out.map.step(map_.step_back(Exact{{1.0, 0.0}}))),
+                     rounded(out.map.step(map_.step_back(Exact{{0.0, 1.0}})))};
 }
 
 Vec2 ThinRegion::as_given(const Vec2& step) const {
-  if (map_.identity) return step;
-  const double u = step.x() * map_.stretch, v = step.y() / map_.stretch + map_.slope * u;
-  return map_.turned ? Vec2{{-v, u}} : Vec2{{u, v}};
+  return map_.step_back(step);
 }
 
 double ThinRegion::joint_width(const OverlayMesh& mesh, std::int32_t element,
@@ -184,8 +150,8 @@ double ThinRegion::joint_width(const OverlayMesh& mesh, std::int32_t element,
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec2& a = corner[k];
     const Vec2& b = corner[(k + 1) % 3];
-    const Exact side = moved(map_, {difference(b.x(), a.x()), difference(b.y(), a.y())});
-    largest = std::max(largest, std::abs(cross(step, Vec2{{rounded(side.x), rounded(side.y)}})));
+    const Exact side{{difference(b.x(), a.x()), difference(b.y(), a.y())}};
+    largest = std::max(largest, std::abs(cross(step, rounded(map_.step(side)))));
   }
   return largest / given_diameter(mesh, element);
 }

@@ -72,11 +72,8 @@ class ThinRegion {
   double joint_width(const OverlayMesh& mesh, std::int32_t element, const Vec2& step) const;
 
  private:
-  struct Exact {
-    DoubleDouble x, y;
-  };
+  using Exact = Vec<2, DoubleDouble>;
   Exact from_centre(const Vec2& p) const;
-  static Exact moved(const AreaMap& map, const Exact& p);
   static Exact mix(const Exact& a, const Exact& b, double s);
   LinearPlace place(const std::array<DoubleDouble, 2>& at,
                     const std::array<Exact, 2>& gradient) const;

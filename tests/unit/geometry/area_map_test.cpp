@@ -79,6 +79,34 @@ TEST(AreaMap, GradientsFollow) {
   }
 }
 
+// (1) step_back(step(d)) == d up to rounding, in double-double to its own.
+// (2) dot(gradient(g), step(d)) == dot(g, d).
+TEST(AreaMap, StepsGoThereAndBack) {
+  using Exact = Vec<2, DoubleDouble>;
+  RandomStream random("steps", 1);
+  for (int i = 0; i < 200; ++i) {
+    const Points p = thin_triangle(1e-6, 1.0, random);
+    const AreaMap map = round_map(p);
+    ASSERT_FALSE(map.identity);
+    const Exact d{{random.uniform(-1, 1), DoubleDouble(random.uniform(-1, 1), 1e-20)}};
+    const Exact g{{random.uniform(-1, 1), random.uniform(-1, 1)}};
+    const Exact back = map.step_back(map.step(d)) - d;
+    EXPECT_LE(std::abs(back.x().hi), 1e-31);
+    EXPECT_LE(std::abs(back.y().hi), 1e-31);
+    const DoubleDouble off = dot(map.gradient(g), map.step(d)) - dot(g, d);
+    EXPECT_LE(std::abs(off.hi), 1e-25);  // of terms of size 1e6
+    const Vec2 plain{{d.x().hi, d.y().hi}};
+    EXPECT_LE(norm(map.step_back(map.step(plain)) - plain), 4e-16);
+    const Vec2 there = map(p[1]) - map(p[0]);
+    const Exact exact =
+        map.step(Exact{{DoubleDouble(p[1].x()) - p[0].x(), DoubleDouble(p[1].y()) - p[0].y()}});
+    EXPECT_LE(norm(there - Vec2{{exact.x().hi, exact.y().hi}}), 4e-16 * norm(there));
+  }
+  EXPECT_EQ(AreaMap().step(Vec2{{1, 2}}), (Vec2{{1, 2}}));
+  EXPECT_EQ(AreaMap().step_back(Vec2{{1, 2}}), (Vec2{{1, 2}}));
+  EXPECT_EQ(AreaMap().gradient(Vec2{{1, 2}}), (Vec2{{1, 2}}));
+}
+
 TEST(AreaMap, RoundAndDegenerateShapesStay) {
   const Points round = {Vec2{{0, 0}}, Vec2{{1, 0.1}}, Vec2{{0.3, 0.2}}};
   EXPECT_TRUE(round_map(round).identity);
