@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "bezel/base/error.hpp"
 #include "bezel/geometry/area_map.hpp"
+#include "bezel/geometry/bent.hpp"
 #include "bezel/geometry/jacobian_kernel.hpp"
 #include "bezel/geometry/triangle_check.hpp"
 #include "bezel/geometry/triangle_kernel.hpp"
@@ -44,11 +46,14 @@ using geometry_kernel::map_gradient;
 std::vector<double> jacobian_determinant(int g, std::span<const Vec2> control) {
   check_triangle(g, control, bernstein::max_triangle_degree);
   const RoundControl round(control);
-  control = round.points();
   using geometry_kernel::JacobianTable;
   const auto by_table = [&](const JacobianTable& table) {
     std::vector<double> room(4 * table.steps.size()), det(table.scale.size());
-    table(control.data(), room.data(), det.data());
+    table(round.points().data(), room.data(), det.data());
+    // The mean of the coefficients is twice the area.
+    const double twice = std::accumulate(det.begin(), det.end(), 0.0);
+    if (g > 1 && is_bent(round.points(), 0.5 * twice / static_cast<double>(det.size())))
+      return bent_jacobian(g, control);
     return det;
   };
   return g <= JacobianTable::max_kept ? by_table(JacobianTable::of(g)) : by_table(JacobianTable(g));
@@ -133,6 +138,7 @@ const SideTable& side_table(int g) {
 double area(int g, std::span<const Vec2> control) {
   check_triangle(g, control, bernstein::max_triangle_degree);
   if (g == 1) return 0.5 * triangle_cross(control[0], control[1], control[2]);
+  const std::span<const Vec2> given = control;
   const RoundControl round(control);
   control = round.points();
   // Green: area = 1/2 closed integral of x dy - y dx, each side exact by the Bernstein product
@@ -155,7 +161,8 @@ double area(int g, std::span<const Vec2> control) {
       for (std::size_t j = 0; j < degree; ++j)
         sum += *weight++ * (x[i] * (y[j + 1] - y[j]) - y[i] * (x[j + 1] - x[j]));
   }
-  return 0.25 * sum;  // g (from the derivative) / (2g) / 2
+  const double found = 0.25 * sum;  // g (from the derivative) / (2g) / 2
+  return is_bent(control, found) ? bent_area(g, given) : found;
 }
 
 double moment(int g, std::span<const Vec2> control, int a, int b) {
