@@ -110,6 +110,10 @@ double AbsIntegral::of_both_signs(std::size_t e, const double* c, std::size_t st
     const ElementMap element(mesh, id);
     const RoundControl round(element.control());
     rule.map(round.points(), x, y, w);
+    const std::vector<double> jacobian =
+        jacobian_if_bent(element.degree(), element.control(), round.points());
+    if (!jacobian.empty())
+      bernstein::evaluate(2 * (element.degree() - 1), jacobian, rule.u, rule.v, w);
     if (space_->basis() == Basis::physical) {
       to_frame(moved(round.map(), space_->frame(id)), x, y);
       u = x;

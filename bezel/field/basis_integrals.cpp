@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <vector>
 
 #include "bezel/bernstein/multinomial.hpp"
 #include "bezel/field/element_kernel.hpp"
 #include "bezel/field/integrals.hpp"
+#include "bezel/geometry/bent.hpp"
 #include "bezel/geometry/jacobian_kernel.hpp"
 #include "bezel/numeric/binomial.hpp"
 #include "bezel/numeric/lanes.hpp"
@@ -195,6 +197,12 @@ class ByJacobian {
     std::array<double, JacobianTable::max_size> det;
     table(map.control().data(), room.data(), det.data());
     const std::size_t size = table.scale.size();
+    const double twice_area =
+        std::accumulate(det.begin(), det.begin() + static_cast<std::ptrdiff_t>(size), 0.0) /
+        static_cast<double>(size);
+    if (g_ > 1 && is_bent(map.control(), 0.5 * twice_area))
+      std::ranges::copy(bent_jacobian(g_, ElementMap(*space_.mesh(), ElementId(e)).control()),
+                        det.begin());
     for (const double* row = product_.data(); row != product_.data() + product_.size();
          row += size) {
       double sum = 0.0;

@@ -13,6 +13,7 @@
 #include "bezel/bernstein/triangle.hpp"
 #include "bezel/field/space.hpp"
 #include "bezel/geometry/area_map.hpp"
+#include "bezel/geometry/bent.hpp"
 #include "bezel/geometry/triangle.hpp"
 #include "bezel/numeric/quadrature.hpp"
 
@@ -48,10 +49,22 @@ class ElementMap {
       for (Vec2& p : std::span(control_).first(size_)) p = map(p);
     return map;
   }
+  /// The same, and det() has all its digits on elements that no plane makes round, too.
+  AreaMap make_round_for_det() {
+    const auto given = control_;
+    const AreaMap map = make_round();
+    bent_jacobian_ = jacobian_if_bent(degree_, std::span(given).first(size_), control());
+    return map;
+  }
   int degree() const { return degree_; }
   std::span<const Vec2> control() const { return {control_.data(), size_}; }
   Vec2 operator()(const Lambda& lambda) const {
     return bernstein::evaluate<Vec2>(degree_, control(), lambda);
+  }
+  /// The Jacobian's determinant.
+  double det(const Lambda& lambda) const {
+    if (bent_jacobian_.empty()) return derivatives(lambda).det();
+    return bernstein::evaluate<double>(2 * (degree_ - 1), bent_jacobian_, lambda);
   }
   MapPoint derivatives(const Lambda& lambda) const {
     const auto v = bernstein::evaluate_gradient<Vec2>(degree_, control(), lambda);
@@ -62,6 +75,7 @@ class ElementMap {
   int degree_;
   std::size_t size_;
   std::array<Vec2, static_cast<std::size_t>(largest_size)> control_;
+  std::vector<double> bent_jacobian_;  // of an element that is bent, else empty
 };
 
 /// Where an element's polynomial is evaluated: the reference point itself, or the frame's

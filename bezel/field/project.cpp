@@ -123,10 +123,10 @@ Samples take_samples(const Space& space, ElementId e, const TriangleRule& rule,
             MatrixXd(index(points), index(components.size()))};
   std::vector<Vec2> x(points);
   ElementMap round = map;
-  round.make_round();
+  round.make_round_for_det();
   for (std::size_t q = 0; q < points; ++q) {
     x[q] = map(rule.lambda[q]);
-    s.weight(index(q)) = rule.weight[q] * round.derivatives(rule.lambda[q]).det();
+    s.weight(index(q)) = rule.weight[q] * round.det(rule.lambda[q]);
   }
   for (std::size_t k = 0; k < components.size(); ++k)
     field_detail::evaluate_formula(components[k], x, {s.values.col(index(k)).data(), points}, e);

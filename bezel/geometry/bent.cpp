@@ -4,6 +4,7 @@
 
 #include "bezel/bernstein/index.hpp"
 #include "bezel/geometry/jacobian_kernel.hpp"
+#include "bezel/geometry/triangle.hpp"
 #include "bezel/numeric/binomial.hpp"
 #include "bezel/numeric/eft.hpp"
 
@@ -83,6 +84,12 @@ std::vector<double> bent_jacobian(int g, std::span<const Vec2> control) {
     return out;
   };
   return g <= JacobianTable::max_kept ? by_table(JacobianTable::of(g)) : by_table(JacobianTable(g));
+}
+
+std::vector<double> jacobian_if_bent(int g, std::span<const Vec2> control,
+                                     std::span<const Vec2> round) {
+  if (g == 1 || !is_bent(round, area(g, round))) return {};
+  return bent_jacobian(g, control);
 }
 
 }  // namespace bezel

@@ -39,4 +39,9 @@ double bent_area(int g, std::span<const Vec2> control);
 /// @param control  points of a triangle of degree g, unchecked
 std::vector<double> bent_jacobian(int g, std::span<const Vec2> control);
 
+/// The same where the triangle is bent, else nothing.
+/// @param round  its control points where it is as round as it can be
+std::vector<double> jacobian_if_bent(int g, std::span<const Vec2> control,
+                                     std::span<const Vec2> round);
+
 }  // namespace bezel

@@ -11,6 +11,8 @@
 #include "bezel/geometry/triangle.hpp"
 #include "checks.hpp"
 #include "meshes.hpp"
+#include "support/exact_integrals.hpp"
+#include "support/meshes.hpp"
 
 namespace bezel {
 namespace {
@@ -244,6 +246,24 @@ TEST(ValueRange, Errors) {
             "is 40");
   EXPECT_EQ(message_of([&] { (void)reference_polynomial(field, ElementId(9), 0); }),
             "triangle 9 does not exist, the mesh has 8");
+}
+
+// Along a parabola, bent by 1e5 of their widths.
+TEST(Norms, OfBentElementsHaveAllTheirDigits) {
+  for (const int g : {2, 3}) {
+    const auto mesh = test::grid_mesh(3, g, 1.0, [](const Vec2& p) {
+      return Vec2{{p[0] + 1.0, 1e-6 * p[1] + 0.3 * (1.0 - p[0] * p[0])}};
+    });
+    const auto space = Space::discontinuous(mesh, 2);
+    std::vector<double> c(space->coefficient_count(), 1.0);
+    const Field one("one", space, c);
+    double exact = 0.0;
+    for (std::size_t e = 0; e < mesh->element_count(); ++e)
+      exact += test::exact_integrals(g, mesh->gather(ElementId(e)), 0)[0].hi;
+    const double norm = l2_norm(one);
+    EXPECT_NEAR(norm * norm, exact, 4e-15 * exact);
+    EXPECT_NEAR(integral(one)[0], exact, 4e-15 * exact);
+  }
 }
 
 }  // namespace

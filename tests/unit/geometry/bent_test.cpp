@@ -71,6 +71,15 @@ TEST(Bent, OnlyWhatNoAreaMapMakesRound) {
   }
 }
 
+TEST_P(BentTriangles, JacobianOnlyIfBent) {
+  const int g = GetParam();
+  RandomStream random("if bent", static_cast<std::uint64_t>(g));
+  const std::vector<Vec2> bent = bent_triangle(g, 1e-6, 0.3, random),
+                          round = bent_triangle(g, 1.0, 0.3, random);
+  EXPECT_EQ(jacobian_if_bent(g, bent, RoundControl(bent).points()), bent_jacobian(g, bent));
+  EXPECT_TRUE(jacobian_if_bent(g, round, RoundControl(round).points()).empty());
+}
+
 // The corners' coefficients are cross products of the sides' first steps.
 TEST_P(BentTriangles, JacobianAtTheCorners) {
   const int g = GetParam();
