@@ -7,6 +7,7 @@
 #include "bezel/base/parallel.hpp"
 #include "bezel/bernstein/triangle.hpp"
 #include "bezel/geometry/area_map.hpp"
+#include "bezel/geometry/bent.hpp"
 #include "bezel/transfer/accumulate.hpp"
 #include "bezel/transfer/mass_rule.hpp"
 
@@ -152,11 +153,16 @@ void ElementFactors::factorise(const Space& space, const Field* weight, int thre
     for (std::size_t e = from; e < to; ++e) {
       mesh.gather(ElementId(e), control);
       const RoundControl round(control);
+      const std::vector<double> bent = jacobian_if_bent(mesh.degree(), control, round.points());
+      const auto det = [&](std::size_t q) {
+        return bent.empty() ? mass_point(rule, round.points(), q).det
+                            : bernstein::evaluate<double>(2 * (mesh.degree() - 1), bent, lambda[q]);
+      };
       if (weight) weight->evaluate(ElementId(e), lambda, factor);
       std::fill(matrix.begin(), matrix.end(), 0.0);
       double* integral = integrals_.data() + e * n;
       for (std::size_t q = 0; q < points; ++q) {
-        const double w = rule.weight[q] * mass_point(rule, round.points(), q).det * factor[q];
+        const double w = rule.weight[q] * det(q) * factor[q];
         const double* at = phi.data() + q * n;
         for (std::size_t i = 0; i < n; ++i) {
           const double wi = w * at[i];

@@ -29,7 +29,7 @@ void ElementMass::prepare(ElementId e, Element& out) const {
   const int p = space_->degree(e);
   const auto n = static_cast<std::size_t>(bernstein::triangle_size(p));
   ElementMap map(*space_->mesh(), e);
-  const AreaMap to_round = map.make_round();
+  const AreaMap to_round = map.make_round_for_det();
   const bool physical = space_->basis() == Basis::physical;
   const Frame frame = physical ? field_detail::moved(to_round, space_->frame(e)) : Frame();
   const TriangleRule& rule = rule_[static_cast<std::size_t>(p)];
@@ -40,7 +40,7 @@ void ElementMass::prepare(ElementId e, Element& out) const {
     const Lambda& lambda = rule.lambda[q];
     const Lambda place = physical ? frame.lambda(map(lambda)) : lambda;
     basis_at(p, place[1], place[2], out.basis.data() + q * n);
-    out.measure[q] = rule.weight[q] * map.derivatives(lambda).det();
+    out.measure[q] = rule.weight[q] * map.det(lambda);
   }
 }
 

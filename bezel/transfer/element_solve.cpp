@@ -113,13 +113,21 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
   std::optional<RoundControl> round;
   if (target_.rounding == 0.0 && is_flat(target_, t)) round.emplace(target_.element(t));
   const std::span<const Vec2> control = round ? round->points() : target_.element(t);
-  if (!round && moment_factor(g, t, whole)) return f;
+  // No plane holds the Jacobian of a bent element.
+  std::vector<double> bent_det;
+  if (is_flat(target_, t) && is_bent(target_, t))
+    bent_det = bent_jacobian(gd, given_element(target_, t));
+  if (!round && bent_det.empty() && moment_factor(g, t, whole)) return f;
   f.scale = 1.0;
   if (g.target_mapped && gd + p <= max_mapped_mass) {
     const MappedMass& mass = mapped_mass(p);
     f.lower.resize(n * n);
     f.integrals.resize(n);
-    mass.compute(control, f.lower, f.integrals);
+    if (bent_det.empty()) {
+      mass.compute(control, f.lower, f.integrals);
+    } else {
+      mass.compute_from(bent_det, f.lower, f.integrals);
+    }
     if (factorize(n, f)) return f;
   }
   const int degree = g.target_mapped ? 2 * p + 2 * (gd - 1) : 2 * p * gd + 2 * (gd - 1);
@@ -133,6 +141,8 @@ const ElementTransfer::Factor& ElementTransfer::factor(const Group& g, std::int3
     v[q] = points.place[q][1];
   }
   fit_map(MapPolynomial(gd, control), padded / lanes, u, v, x, y, det);
+  if (!bent_det.empty())
+    bernstein::evaluate(2 * (gd - 1), bent_det, {u, count}, {v, count}, {det, count});
   Frame frame;
   if (!g.target_mapped) {
     frame = g.target_frame[static_cast<std::size_t>(t)];

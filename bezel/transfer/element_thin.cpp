@@ -23,11 +23,12 @@ bool ElementTransfer::has_thin_donor(const ElementPieces& own) const {
                                              [&](std::int32_t d) { return is_thin_donor(d); });
 }
 
+// A target that is thin in its own plane as well is bent, and so are the regions of all its donors.
 // In a plane where the element is round the joints beside a donor that is long there are open by
 // many roundings of the element: its neighbours' regions are as exact as its own, or do not add up.
 void ElementTransfer::find_thin_regions(std::int32_t t, const ElementPieces& own) {
   const bool any = has_thin_donor(own);
-  const bool all = target_.rounding > 0.0 ? any : is_flat(target_, t);
+  const bool all = is_flat(target_, t) || (any && target_.rounding > 0.0);
   for (std::size_t k = 0; k < own.donors.size(); ++k)
     element_.regions[k].thin = all || (any && is_thin_donor(own.donors[k]));
 }
@@ -40,16 +41,20 @@ const ElementTransfer::RegionShape& ElementTransfer::thin_shape(std::int32_t t, 
   shape = none;
   shape.run = run;
   thin_.begin(t, d, run, donors_plane);
+  bent_ = is_bent_pair(t, d);
+  bent_control_.clear();
   for (const Segment& segment : run) {
     const bool source = segment.target.edge < 0;
     const OverlayMesh& mesh = source ? donor_ : target_;
-    thin_.append(mesh, source ? segment.source : segment.target, shape.control);
+    const Part& part = source ? segment.source : segment.target;
+    thin_.append(mesh, part, shape.control);
+    if (bent_) thin_.append(mesh, part, bent_control_);
     shape.degree.push_back(mesh.degree);
   }
   bridge_joints(shape);
   for (const Bridge& bridge : shape.bridges)
     shape.gap = std::max(shape.gap, norm(thin_.as_given(bridge.step)));
-  shape.area = 0.5 * twice_piece_area(shape);
+  shape.area = bent_ ? bent_region_area(run) : 0.5 * twice_piece_area(shape);
   return shape;
 }
 
@@ -82,9 +87,18 @@ void ElementTransfer::note_thin_region(std::int32_t t, std::int32_t d, const Reg
 
 // Of a donor that is not mapped.
 LinearPlace ElementTransfer::thin_linear_place(const Group& g, std::int32_t d) const {
-  const bool straight = donor_.degree == 1 && (g.donor_space->basis() == Basis::reference ||
-                                               g.donor_space->is_own_frame(ElementId(d)));
-  return straight ? thin_.place_in(donor_, d) : thin_.place_in(g.given_frame_of_donor(d));
+  return is_straight_place(g, d) ? thin_.place_in(donor_, d)
+                                 : thin_.place_in(g.given_frame_of_donor(d));
+}
+
+ExactPlace ElementTransfer::exact_linear_place(const Group& g, std::int32_t d) const {
+  return is_straight_place(g, d) ? thin_.exact_place_in(donor_, d)
+                                 : thin_.exact_place_in(g.given_frame_of_donor(d));
+}
+
+bool ElementTransfer::is_straight_place(const Group& g, std::int32_t d) const {
+  return donor_.degree == 1 &&
+         (g.donor_space->basis() == Basis::reference || g.donor_space->is_own_frame(ElementId(d)));
 }
 
 void ElementTransfer::begin_thin_strip(std::int32_t t, std::int32_t d, const Segment& segment) {
@@ -92,19 +106,33 @@ void ElementTransfer::begin_thin_strip(std::int32_t t, std::int32_t d, const Seg
   shape_.control.clear();
   thin_.append(target_, segment.target, shape_.control);
   thin_.append(donor_, segment.source, shape_.control);
+  bent_ = is_bent_pair(t, d);
+  if (!bent_) return;
+  bent_control_.clear();
+  thin_.append(target_, segment.target, bent_control_);
+  thin_.append(donor_, segment.source, bent_control_);
 }
 
 double ElementTransfer::thin_strip_width(double s) const {
   const std::span<const Vec2> control(shape_.control);
   const auto points = static_cast<std::size_t>(target_.degree + 1);
   const auto [x, slope] = edge_point(control.first(points), s);
-  return cross(slope, foot_point(control.subspan(points), x).point - x);
+  const FootPoint foot = foot_point(control.subspan(points), x);
+  return bent_ ? bent_strip_width(s, foot.s) : cross(slope, foot.point - x);
 }
 
 std::array<double, 2> ElementTransfer::thin_strip_place(const Group& g, std::int32_t d, double s) {
   const auto points = static_cast<std::size_t>(target_.degree + 1);
   const Vec2 x = edge_point(std::span<const Vec2>(shape_.control).first(points), s).value;
   if (!g.donor_mapped) return thin_linear_place(g, d)(x);
+  if (bent_) {
+    const std::span<const ExactVec2> control(bent_control_);
+    BentElement::Place q{};
+    thin_.bring(donor_, d, bent_donor_);
+    return bent_donor_.invert(exact_edge_point(control.first(points), s).value, q, false)
+               ? rounded(q)
+               : thin_.place_in(donor_, d)(x);
+  }
   thin_.bring(donor_, d, thin_donor_map_);
   std::array<double, 3> lambda{};
   if (invert_map(donor_.degree, thin_donor_map_.control, thin_donor_map_.moved(x), lambda, false))
@@ -146,6 +174,7 @@ void ElementTransfer::thin_fan(int degree, const Visit& visit) {
 // own plane, which is the region's.
 void ElementTransfer::thin_reference_nodes(std::int32_t d, std::span<const Segment> run, int degree,
                                            int points) {
+  if (bent_) return bent_reference_nodes(donor_, d, bent_donor_, true, run, degree, points);
   nodes_.clear();
   const Vec2* p = shape_.control.data();
   std::array<double, 3> lambda{};
@@ -176,6 +205,11 @@ void ElementTransfer::thin_reference_nodes(std::int32_t d, std::span<const Segme
 template <class Visit>
 void ElementTransfer::thin_reference_fan(const std::array<double, 2>& centre, int degree,
                                          const Visit& visit) {
+  if (bent_) {
+    return bent_reference_fan(
+        bent_donor_, centre, degree,
+        [&](double w, const std::array<double, 2>& q) { visit(w, q, Vec2()); });
+  }
   const IntervalRule& radial = rule((degree + 3) / 2);
   reserve_points(nodes_.size() * radial.node.size());
   for (const Node& node : nodes_) {
@@ -200,10 +234,21 @@ void ElementTransfer::add_thin_pair(const Group& g, std::int32_t t, std::int32_t
   const std::span<const double> constants = std::span(own.base).first(nc);
   Accumulators& sums = own.sums;
   thin_shape(t, d, run, g.donor_mapped);
+  const bool in_bent_target = is_in_bent_target(g, t, d);
+  if (in_bent_target && !g.donor_mapped) {
+    std::fill(sums.mass.begin(), sums.mass.end(), 0.0);
+    sum_in_bent_target(g, t, d, run, constants, sums);
+    for (std::size_t c = 0; c < nc; ++c) mass[c] = sums.mass[c] + constants[c] * area;
+    return;
+  }
   const bool target_framed = !g.target_mapped && target_.degree > 1;
   const LinearPlace in_target =
       target_framed ? thin_.place_in(g.given_frame_of_target(t)) : thin_.place_in(target_, t);
   if (g.target_mapped) thin_.bring(target_, t, thin_target_map_);
+  if (g.target_mapped && bent_) thin_.bring(target_, t, bent_target_);
+  const ExactPlace exactly_in_target = target_framed
+                                           ? thin_.exact_place_in(g.given_frame_of_target(t))
+                                           : thin_.exact_place_in(target_, t);
   std::array<double, 3> lambda{};
   bool warm = false;
   const auto target_at = [&](const Vec2& x) -> std::array<double, 2> {
@@ -211,6 +256,13 @@ void ElementTransfer::add_thin_pair(const Group& g, std::int32_t t, std::int32_t
     warm = invert_map(target_.degree, thin_target_map_.control, thin_target_map_.moved(x), lambda,
                       warm);
     return warm ? std::array<double, 2>{lambda[1], lambda[2]} : in_target(x);
+  };
+  BentElement::Place place_in_target{}, place_in_donor{};
+  bool found_in_target = false;
+  const auto target_at_exactly = [&](const ExactVec2& x) -> std::array<double, 2> {
+    if (!g.target_mapped) return exactly_in_target(x);
+    found_in_target = bent_target_.invert(x, place_in_target, found_in_target);
+    return found_in_target ? rounded(place_in_target) : exactly_in_target(x);
   };
 
   if (!g.donor_mapped) {
@@ -228,6 +280,7 @@ void ElementTransfer::add_thin_pair(const Group& g, std::int32_t t, std::int32_t
 
   // The donor's mean by the exact rule, the rest in its reference triangle, as in add_pair().
   thin_.bring(donor_, d, thin_donor_map_);
+  if (bent_) thin_.bring(donor_, d, bent_donor_);
   const double* donor_mass = g.donor_mass.data() + static_cast<std::size_t>(d) * nc;
   const double donor_area = donor_.element_area[static_cast<std::size_t>(d)];
   const auto functions = static_cast<std::size_t>(bernstein::triangle_size(pt));
@@ -252,29 +305,41 @@ void ElementTransfer::add_thin_pair(const Group& g, std::int32_t t, std::int32_t
       largest = std::max({largest, std::abs(place[0]), std::abs(place[1])});
     push(w, to[0], to[1], from[0], from[1]);
   };
-  thin_reference_nodes(d, run, with_target, pulled_points(with_target));
-  thin_reference_fan(
-      reference_centre(), with_target,
-      [&](double w, const std::array<double, 2>& q, const Vec2& x) { put(w, target_at(x), q); });
-  // A thin target across is bent in the donor's coordinates by many times its width; in the plane
-  // both are straight over each other's width.
-  if (std::pow(largest, std::max(pt, pd)) > steepest_value) {
-    const std::size_t second = count_;
-    const double bent = std::exchange(largest, 1.0);
-    std::array<double, 3> from{};
-    bool found = false, all = true;
-    thin_fan(pt + pd + 2 * inexact_extra, [&](double w, const Vec2& x) {
-      found = invert_map(donor_.degree, thin_donor_map_.control, x, from, found);
-      all = all && found;
-      put(w, target_at(x), {from[1], from[2]});
-    });
-    if (all && largest < bent) {
-      drop_points(first, second);
-    } else {
-      count_ = second;
+  if (in_bent_target) {
+    sum_in_bent_target(g, t, d, run, constants, mapped);
+  } else {
+    thin_reference_nodes(d, run, with_target, pulled_points(with_target));
+    thin_reference_fan(
+        reference_centre(), with_target,
+        [&](double w, const std::array<double, 2>& q, const Vec2& x) {
+          put(w, bent_ ? target_at_exactly(bent_donor_.at({q[0], q[1]}).value) : target_at(x), q);
+        });
+    // A thin target across is bent in the donor's coordinates by many times its width; in the plane
+    // both are straight over each other's width.
+    if (std::pow(largest, std::max(pt, pd)) > steepest_value) {
+      const std::size_t second = count_;
+      const double bent = std::exchange(largest, 1.0);
+      std::array<double, 3> from{};
+      bool found = false, all = true;
+      thin_fan(pt + pd + 2 * inexact_extra, [&](double w, const Vec2& x) {
+        if (bent_) {
+          const ExactVec2 given = thin_.as_given_exactly(x);
+          found = bent_donor_.invert(given, place_in_donor, found);
+          put(w, target_at_exactly(given), rounded(place_in_donor));
+        } else {
+          found = invert_map(donor_.degree, thin_donor_map_.control, x, from, found);
+          put(w, target_at(x), {from[1], from[2]});
+        }
+        all = all && found;
+      });
+      if (all && largest < bent) {
+        drop_points(first, second);
+      } else {
+        count_ = second;
+      }
     }
+    flush(g, d, pt, constants, mapped);
   }
-  flush(g, d, pt, constants, mapped);
   for (std::size_t n = 0; n < functions; ++n) {
     const double difference = g.target_mapped ? 0.0 : exact.basis[n] - mapped.basis[n];
     sums.basis[n] += mapped.basis[n] + difference;

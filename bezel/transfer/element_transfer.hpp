@@ -209,6 +209,8 @@ class ElementTransfer {
   /// Where its point on the target's part lies in a donor.
   std::array<double, 2> thin_strip_place(const Group& g, std::int32_t d, double s);
   LinearPlace thin_linear_place(const Group& g, std::int32_t d) const;
+  ExactPlace exact_linear_place(const Group& g, std::int32_t d) const;
+  bool is_straight_place(const Group& g, std::int32_t d) const;
   void find_thin_regions(std::int32_t t, const ElementPieces& own);
   /// As shape_of(), from the centre of thin_ and in its plane.
   const RegionShape& thin_shape(std::int32_t t, std::int32_t d, std::span<const Segment> run,
@@ -224,6 +226,24 @@ class ElementTransfer {
   void thin_reference_nodes(std::int32_t d, std::span<const Segment> run, int degree, int points);
   template <class Visit>
   void thin_reference_fan(const std::array<double, 2>& centre, int degree, const Visit& visit);
+  // Of bent elements (element_bent.cpp), the region at work as thin_shape() left it.
+  bool is_bent_pair(std::int32_t t, std::int32_t d) const;
+  /// Of the strip that begin_thin_strip() left, between places on either part.
+  double bent_strip_width(double on_target, double on_donor) const;
+  /// Its area; sets bent_joints_.
+  double bent_region_area(std::span<const Segment> run);
+  /// As reference_nodes(), in `own`, which is the donor (`source`) or the target.
+  void bent_reference_nodes(const OverlayMesh& mesh, std::int32_t element, const BentElement& own,
+                            bool source, std::span<const Segment> run, int degree, int points);
+  /// Calls visit(weight, q) at the points of reference_fan() in an element.
+  template <class Visit>
+  void bent_reference_fan(const BentElement& own, const std::array<double, 2>& centre, int degree,
+                          const Visit& visit);
+  /// Whether products are integrated in the target's reference triangle.
+  bool is_in_bent_target(const Group& g, std::int32_t t, std::int32_t d) const;
+  void sum_in_bent_target(const Group& g, std::int32_t t, std::int32_t d,
+                          std::span<const Segment> run, std::span<const double> constants,
+                          Accumulators& sums);
   void add_thin_pair(const Group& g, std::int32_t t, std::int32_t d, std::span<const Segment> run,
                      double area, GroupState& own, std::span<double> mass);
   // By moments (element_moments.cpp).
@@ -350,6 +370,10 @@ class ElementTransfer {
   std::vector<std::uint8_t> thin_donor_;  // by donor element; empty: none is thin
   ThinRegion thin_;                       // of the region at work, and elements brought there
   MappedElement thin_donor_map_, thin_target_map_;
+  bool bent_ = false;  // the region at work is one of a bent element; then it has besides
+  std::vector<ExactVec2> bent_control_;                // of the pieces, from the centre
+  std::vector<std::array<ExactVec2, 2>> bent_joints_;  // where they end and begin
+  BentElement bent_donor_, bent_target_;
 
   // Tables.
   std::vector<IntervalRule> rules_;

@@ -43,15 +43,16 @@ MassRule make_mass_rule(int geometric_degree, int degree) {
 
 namespace {
 
+double multinomial(const std::array<int, 3>& i) {
+  return binomial(i[0] + i[1] + i[2], i[2]) * binomial(i[0] + i[1], i[1]);
+}
+
 /// Integral over the reference triangle of the product of Bernstein polynomials with these
 /// multi-indices, the first without its multinomial: of degree n in all, it is a multiple of one of
 /// degree n, whose integral is 1 / ((n + 1) (n + 2)).
 double product_integral(std::span<const std::array<int, 3>> factors) {
   std::array<int, 3> sum{};
   double factor = 1.0;
-  const auto multinomial = [](const std::array<int, 3>& i) {
-    return binomial(i[0] + i[1] + i[2], i[2]) * binomial(i[0] + i[1], i[1]);
-  };
   for (const auto& i : factors) {
     if (&i != factors.data()) factor *= multinomial(i);
     for (std::size_t k = 0; k < 3; ++k) sum[k] += i[k];
@@ -106,11 +107,25 @@ void MappedMass::compute(std::span<const Vec2> control, std::span<double> mass,
               cross(du[first], dv[second]);
     }
   }
+  add_up(std::span(det).first(static_cast<std::size_t>(bernstein::triangle_size(2 * lower))), mass,
+         integral);
+}
+
+void MappedMass::compute_from(std::span<const double> jacobian, std::span<double> mass,
+                              std::span<double> integral) const {
+  std::vector<double> det(jacobian.begin(), jacobian.end());
+  for (int d = 0; d < static_cast<int>(det.size()); ++d)
+    det[static_cast<std::size_t>(d)] *=
+        multinomial(bernstein::triangle_multi_index(2 * (geometric_degree - 1), d));
+  add_up(det, mass, integral);
+}
+
+void MappedMass::add_up(std::span<const double> det, std::span<double> mass,
+                        std::span<double> integral) const {
   const std::size_t packed = size * (size + 1) / 2;
   std::fill(integral.begin(), integral.end(), 0.0);
   std::fill(mass.begin(), mass.begin() + static_cast<std::ptrdiff_t>(packed), 0.0);
-  const auto functions = static_cast<std::size_t>(bernstein::triangle_size(2 * lower));
-  for (std::size_t d = 0; d < functions; ++d) {
+  for (std::size_t d = 0; d < det.size(); ++d) {
     const double value = det[d];
     const double* of = integrals.data() + d * size;
     for (std::size_t i = 0; i < size; ++i) integral[i] += value * of[i];

@@ -52,6 +52,12 @@ struct MappedMass {
   /// @param integral  out, of each basis function
   void compute(std::span<const Vec2> control, std::span<double> mass,
                std::span<double> integral) const;
+  /// The same from jacobian_determinant().
+  void compute_from(std::span<const double> jacobian, std::span<double> mass,
+                    std::span<double> integral) const;
+  /// The same from the determinant's coefficients times their multinomials.
+  void add_up(std::span<const double> det, std::span<double> mass,
+              std::span<double> integral) const;
 };
 
 /// Replaces the lower triangle of a matrix (n x n, row major) by its Cholesky factor; false when

@@ -138,6 +138,17 @@ Box2 OverlayMesh::edge_box(std::int32_t e) const {
   return around;
 }
 
+void OverlayMesh::came_from(std::vector<Vec2> control, double with_rounding) {
+  given_control = std::move(control);
+  rounding = with_rounding;
+  if (given_control.empty() || degree == 1) return;
+  for (std::size_t e = 0; e < element_area.size(); ++e) {
+    const auto number = static_cast<std::int32_t>(e);
+    if (is_flat(*this, number) && is_bent(*this, number))
+      element_area[e] = area(degree, given_element(*this, number));
+  }
+}
+
 double OverlayMesh::edge_width(std::int32_t e) const {
   double width = edge_box(e).diameter();
   for (const std::int32_t side : edge_sides[static_cast<std::size_t>(e)])

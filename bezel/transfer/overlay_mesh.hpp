@@ -46,6 +46,9 @@ struct OverlayMesh {
   std::vector<Vec2> given_control;
   std::vector<std::int32_t> numbers;  ///< of a part of a mesh: the elements' numbers in the whole
 
+  /// Notes the plane that a moved mesh came from: areas of elements that no plane makes round are
+  /// taken there.
+  void came_from(std::vector<Vec2> control, double with_rounding);
   std::int32_t number_of(std::int32_t e) const {
     return numbers.empty() ? e : numbers[static_cast<std::size_t>(e)];
   }

@@ -331,12 +331,10 @@ ShareReport work_on(MessageReader& in, int threads, MessageWriter& out) {
   std::vector<Group> groups;
   OverlayMesh donor(std::move(donor_part.mesh), "donor", threads);
   donor.numbers = std::move(donor_part.numbers);
-  donor.rounding = donor_part.rounding;
-  donor.given_control = std::move(donor_part.given_control);
+  donor.came_from(std::move(donor_part.given_control), donor_part.rounding);
   OverlayMesh target(std::move(target_part.mesh), "target", threads);
   target.numbers = std::move(target_part.numbers);
-  target.rounding = target_part.rounding;
-  target.given_control = std::move(target_part.given_control);
+  target.came_from(std::move(target_part.given_control), target_part.rounding);
   for (std::uint64_t i = 0; i < group_count; ++i)
     groups.push_back(read_group(donor, target, threads, in));
   const FrontSearch search(donor, connected);

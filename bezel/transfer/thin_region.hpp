@@ -14,6 +14,7 @@
 #include "bezel/field/space.hpp"
 #include "bezel/geometry/area_map.hpp"
 #include "bezel/numeric/double_double.hpp"
+#include "bezel/transfer/bent_element.hpp"
 #include "bezel/transfer/overlay.hpp"
 
 namespace bezel::detail {
@@ -29,6 +30,11 @@ inline bool is_flat(const OverlayMesh& mesh, std::int32_t e) {
 }
 /// ... and in the plane that the mesh came from.
 bool is_flat_as_given(const OverlayMesh& mesh, std::int32_t e);
+/// ... and in any plane, for it is bent by more than its width.
+bool is_bent(const OverlayMesh& mesh, std::int32_t e);
+std::vector<Vec2> given_element(const OverlayMesh& mesh, std::int32_t e);
+/// Its area over the square of its diameter there.
+double roundness(const OverlayMesh& mesh, std::int32_t e);
 double given_diameter(const OverlayMesh& mesh, std::int32_t e);
 double largest_given_coordinate(const OverlayMesh& mesh, std::int32_t e);
 
@@ -39,6 +45,17 @@ struct LinearPlace {
 
   std::array<double, 2> operator()(const Vec2& x) const {
     return {at[0] + dot(gradient[0], x), at[1] + dot(gradient[1], x)};
+  }
+};
+
+/// The same of points as they were given, from the centre.
+struct ExactPlace {
+  std::array<DoubleDouble, 2> at;
+  std::array<ExactVec2, 2> gradient;
+
+  std::array<double, 2> operator()(const ExactVec2& x) const {
+    return {static_cast<double>(at[0] + dot(gradient[0], x)),
+            static_cast<double>(at[1] + dot(gradient[1], x))};
   }
 };
 
@@ -66,24 +83,33 @@ class ThinRegion {
   LinearPlace place_in(const OverlayMesh& mesh, std::int32_t element) const;
   LinearPlace place_in(const Frame& frame) const;
   void bring(const OverlayMesh& mesh, std::int32_t element, MappedElement& out) const;
+  // The same without rounding, for regions of bent elements.
+  void append(const OverlayMesh& mesh, const Part& part, std::vector<ExactVec2>& out);
+  ExactPlace exact_place_in(const OverlayMesh& mesh, std::int32_t element) const;
+  ExactPlace exact_place_in(const Frame& frame) const;
+  void bring(const OverlayMesh& mesh, std::int32_t element, BentElement& out) const;
+  /// A point, or a step, in the region's plane from the one as given, and back.
+  Vec2 in_plane(const ExactVec2& p) const { return rounded(map_.step(p)); }
+  ExactVec2 as_given_exactly(const Vec2& p) const {
+    return map_.step_back(ExactVec2{{p.x(), p.y()}});
+  }
   /// A step there as it was given.
   Vec2 as_given(const Vec2& step) const;
   /// The largest area between a step and a side of an element, over the element's diameter.
   double joint_width(const OverlayMesh& mesh, std::int32_t element, const Vec2& step) const;
 
  private:
-  using Exact = Vec<2, DoubleDouble>;
-  Exact from_centre(const Vec2& p) const;
-  static Exact mix(const Exact& a, const Exact& b, double s);
-  LinearPlace place(const std::array<DoubleDouble, 2>& at,
-                    const std::array<Exact, 2>& gradient) const;
+  static ExactVec2 mix(const ExactVec2& a, const ExactVec2& b, double s);
+  /// The blossom of exact_ at i times `to` and `from` else.
+  const ExactVec2& blossom(const Part& part, std::size_t i);
+  LinearPlace place(const ExactPlace& exact) const;
 
   const OverlayMesh& donor_;
   const OverlayMesh& target_;
   Vec2 centre_;
   AreaMap map_;
   std::vector<Vec2> given_;
-  std::vector<Exact> exact_, blossom_;
+  std::vector<ExactVec2> exact_, blossom_;
 };
 
 }  // namespace bezel::detail

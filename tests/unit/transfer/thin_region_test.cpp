@@ -7,6 +7,8 @@
 
 #include "bezel/geometry/area_map.hpp"
 #include "bezel/transfer/group.hpp"
+#include "support/exact_integrals.hpp"
+#include "support/mesh_pairs.hpp"
 #include "support/meshes.hpp"
 
 namespace bezel::detail {
@@ -97,6 +99,59 @@ TEST(ThinRegion, CornersLieInTheCornersOfTheTriangle) {
       EXPECT_EQ(own.control[k], own.moved(side[0]));
     }
   }
+}
+
+/// Two triangles of width 1e-6, bent by 0.2.
+OverlayMesh bent_strip(int degree) {
+  return {test::grid_mesh(1, degree, 1.0,
+                          [](const Vec2& p) {
+                            const double v = 1e-6 * p[1] + 0.2 * (1.0 - p[0] * p[0]);
+                            return Vec2{{1.0 + 0.9 * p[0] - 0.4 * v, 0.4 * p[0] + 0.9 * v - 0.5}};
+                          }),
+          "mesh", 1};
+}
+
+TEST_P(ThinRegions, PartsOfBentEdgesBoundTheWholeArea) {
+  if (GetParam() == 1) return;
+  const OverlayMesh mesh = bent_strip(GetParam());
+  EXPECT_FALSE(is_bent(strip(GetParam()), 0));
+  ThinRegion region(mesh, mesh);
+  for (std::int32_t e = 0; e < 2; ++e) {
+    ASSERT_TRUE(is_bent(mesh, e));
+    const std::vector<Segment> run = around(mesh, e);
+    region.begin(0, e, run, true);
+    DoubleDouble twice;
+    for (const Segment& segment : run) {
+      const Part& part = segment.source;
+      std::vector<ExactVec2> first, rest;
+      const double middle = part.from + 0.3 * (part.to - part.from);
+      region.append(mesh, {part.edge, part.from, middle}, first);
+      region.append(mesh, {part.edge, middle, part.to}, rest);
+      EXPECT_EQ(first.back(), rest.front());
+      EXPECT_EQ(region.in_plane(region.as_given_exactly({{0.25, 0.5}})), (Vec2{{0.25, 0.5}}));
+      twice += twice_swept_area(first) + twice_swept_area(rest);
+    }
+    const double exact = test::exact_integrals(GetParam(), mesh.element(e), 0)[0].hi;
+    EXPECT_NEAR(0.5 * twice.hi, exact, 4e-16 * exact);
+    EXPECT_NEAR(mesh.element_area[static_cast<std::size_t>(e)], exact, 4e-16 * exact);
+  }
+}
+
+// Rounded coordinates of another plane do not tell areas.
+TEST_P(ThinRegions, AreasOfMovedBentElementsAreThoseAsGiven) {
+  if (GetParam() == 1) return;
+  const OverlayMesh given = bent_strip(GetParam());
+  const AreaMap map = round_map(given.element(0));
+  OverlayMesh mesh(
+      test::with_control(given.mesh, [&](const Vec2& p, std::size_t) { return map(p); }), "mesh",
+      1);
+  std::vector<Vec2> control;
+  for (std::size_t n = 0; n < given.mesh->node_count(); ++n)
+    control.push_back(given.mesh->control(NodeId(n)));
+  mesh.came_from(control, 1e-14);
+  EXPECT_EQ(mesh.rounding, 1e-14);
+  EXPECT_EQ(mesh.element_area, given.element_area);
+  EXPECT_TRUE(is_bent(mesh, 0));
 }
 
 TEST_P(ThinRegions, StepsAsGiven) {
