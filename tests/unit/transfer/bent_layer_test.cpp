@@ -10,16 +10,18 @@
 #include <utility>
 #include <vector>
 
-#include "bezel/base/random.hpp"
 #include "bezel/transfer/operator.hpp"
 #include "bezel/transfer/transfer.hpp"
-#include "support/exact_integrals.hpp"
+#include "support/conservation.hpp"
 #include "support/mesh_pairs.hpp"
 
 namespace bezel {
 namespace {
 
+using test::constant_and_noise;
+using test::mass_defect;
 using test::MeshPtr;
+using test::off_constant;
 
 /// A layer of width w along a wall bent by `bend`, turned; of parabolas, or cubics.
 MeshPtr layer(int cells, int degree, double w, double bend, double angle) {
@@ -46,38 +48,6 @@ MeshPtr arc(int cells, int degree, double w) {
     }
     return (1.0 + 0.5 * w * (p[1] + 1.0)) * wall;
   });
-}
-
-/// A constant, and a polynomial on each element at random.
-Field constant_and_noise(const std::shared_ptr<const Space>& space) {
-  std::vector<double> c(space->coefficient_count() * 2);
-  RandomStream random("constant and noise", 1);
-  for (std::size_t i = 0; i < c.size(); i += 2) {
-    c[i] = 3.25;
-    c[i + 1] = random.uniform(-1.0, 2.0);
-  }
-  return {"constant and noise", space, c, 2};
-}
-
-double off_constant(const Field& f) {
-  double worst = 0.0;
-  for (std::size_t i = 0; i < f.coefficients().size(); i += 2)
-    worst = std::max(worst, std::abs(f.coefficients()[i] / 3.25 - 1.0));
-  return worst;
-}
-
-/// As the report has it, and from the coefficients alone.
-double mass_defect(const Field& donor, const TransferResult& result) {
-  double worst = 0.0;
-  for (const FieldReport& line : result.report.fields) {
-    const auto k = static_cast<std::size_t>(line.component);
-    const test::ExactMass before = test::exact_mass(donor, k),
-                          after = test::exact_mass(result.fields[0], k);
-    const DoubleDouble defect = after.total - (before.total - DoubleDouble(line.mass_outside) +
-                                               DoubleDouble(line.mass_made));
-    worst = std::max({worst, line.relative_mass_defect, std::abs(defect.hi) / before.size});
-  }
-  return worst;
 }
 
 TransferResult moved(const Field& field, const MeshPtr& target, int degree, Uncovered policy) {

@@ -10,17 +10,19 @@
 #include <utility>
 #include <vector>
 
-#include "bezel/base/random.hpp"
 #include "bezel/transfer/operator.hpp"
 #include "bezel/transfer/transfer.hpp"
-#include "support/exact_integrals.hpp"
+#include "support/conservation.hpp"
 #include "support/mesh_pairs.hpp"
 #include "support/slow_projection.hpp"
 
 namespace bezel {
 namespace {
 
+using test::constant_and_noise;
+using test::mass_defect;
 using test::MeshPtr;
+using test::off_constant;
 
 MeshPtr affine(const MeshPtr& mesh, const Vec2& first, const Vec2& second, const Vec2& to) {
   return test::with_control(
@@ -31,43 +33,6 @@ MeshPtr affine(const MeshPtr& mesh, const Vec2& first, const Vec2& second, const
 MeshPtr strip(const MeshPtr& mesh, double flat, double angle, const Vec2& to) {
   const double c = std::cos(angle), s = std::sin(angle);
   return affine(mesh, {{c, s}}, Vec2{{-s, c}} * flat, to);
-}
-
-/// A constant, and a polynomial on each element at random.
-Field constant_and_noise(const std::shared_ptr<const Space>& space) {
-  std::vector<double> c(space->coefficient_count() * 2);
-  RandomStream random("constant and noise", 1);
-  for (std::size_t i = 0; i < c.size(); i += 2) {
-    c[i] = 3.25;
-    c[i + 1] = random.uniform(-1.0, 2.0);
-  }
-  return {"constant and noise", space, c, 2};
-}
-
-double off_constant(const Field& f) {
-  double worst = 0.0;
-  for (std::size_t i = 0; i < f.coefficients().size(); i += 2)
-    worst = std::max(worst, std::abs(f.coefficients()[i] / 3.25 - 1.0));
-  return worst;
-}
-
-/// As the report has it, and from the coefficients alone where they say all.
-double mass_defect(const Field& donor, const TransferResult& result) {
-  double worst = 0.0;
-  for (const FieldReport& line : result.report.fields) {
-    worst = std::max(worst, line.relative_mass_defect);
-    const Field& moved = result.fields[0];
-    const bool curved = moved.mesh().degree() > 1 || donor.mesh().degree() > 1;
-    const bool physical =
-        moved.space().basis() == Basis::physical || donor.space().basis() == Basis::physical;
-    if (curved && physical) continue;
-    const auto k = static_cast<std::size_t>(line.component);
-    const test::ExactMass before = test::exact_mass(donor, k), after = test::exact_mass(moved, k);
-    const DoubleDouble defect = after.total - (before.total - DoubleDouble(line.mass_outside) +
-                                               DoubleDouble(line.mass_made));
-    worst = std::max(worst, std::abs(defect.hi) / before.size);
-  }
-  return worst;
 }
 
 /// Calls check(donor field, result, what it is) for fields of several degrees in both bases.
