@@ -124,11 +124,10 @@ void ElementTransfer::sum_in_bent_target(const Group& g, std::int32_t t, std::in
   const int degree =
       pt + 2 * (target_.degree - 1) + (g.donor_mapped ? pd + inexact_extra : pd * target_.degree);
   bent_reference_nodes(target_, t, bent_target_, false, run, degree, pulled_points(degree));
-  bent_reference_fan(bent_target_, reference_centre(), degree,
-                     [&](double w, const std::array<double, 2>& q) {
-                       const auto from = donor_at(bent_target_.at({q[0], q[1]}).value);
-                       push(w, q[0], q[1], from[0], from[1]);
-                     });
+  reference_rays(reference_centre(), degree, [&](double w, const std::array<double, 2>& q) {
+    const auto from = donor_at(bent_target_.at({q[0], q[1]}).value);
+    push(w * bent_target_.det(q), q[0], q[1], from[0], from[1]);
+  });
   flush(g, d, pt, constants, sums);
 }
 

@@ -71,9 +71,8 @@ void ElementTransfer::reference_fan(const OverlayMesh& mesh, std::int32_t elemen
 }
 
 template <class Visit>
-void ElementTransfer::bent_reference_fan(const BentElement& own,
-                                         const std::array<double, 2>& centre, int degree,
-                                         const Visit& visit) {
+void ElementTransfer::reference_rays(const std::array<double, 2>& centre, int degree,
+                                     const Visit& visit) {
   const IntervalRule& radial = rule((degree + 3) / 2);
   reserve_points(nodes_.size() * radial.node.size());
   for (const Node& node : nodes_) {
@@ -82,7 +81,7 @@ void ElementTransfer::bent_reference_fan(const BentElement& own,
     for (std::size_t i = 0; i < radial.node.size(); ++i) {
       const double tau = radial.node[i];
       const std::array<double, 2> q{centre[0] + tau * arm[0], centre[1] + tau * arm[1]};
-      visit(kappa * radial.weight[i] * tau * own.det(q), q);
+      visit(kappa * radial.weight[i] * tau, q);
     }
   }
 }

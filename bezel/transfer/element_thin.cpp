@@ -206,22 +206,14 @@ template <class Visit>
 void ElementTransfer::thin_reference_fan(const std::array<double, 2>& centre, int degree,
                                          const Visit& visit) {
   if (bent_) {
-    return bent_reference_fan(
-        bent_donor_, centre, degree,
-        [&](double w, const std::array<double, 2>& q) { visit(w, q, Vec2()); });
+    return reference_rays(centre, degree, [&](double w, const std::array<double, 2>& q) {
+      visit(w * bent_donor_.det(q), q, Vec2());
+    });
   }
-  const IntervalRule& radial = rule((degree + 3) / 2);
-  reserve_points(nodes_.size() * radial.node.size());
-  for (const Node& node : nodes_) {
-    const std::array<double, 2> arm{node.q[0] - centre[0], node.q[1] - centre[1]};
-    const double kappa = arm[0] * node.dq[1] - arm[1] * node.dq[0];
-    for (std::size_t i = 0; i < radial.node.size(); ++i) {
-      const double tau = radial.node[i];
-      const std::array<double, 2> q{centre[0] + tau * arm[0], centre[1] + tau * arm[1]};
-      const MapPoint map = map_point(donor_.degree, thin_donor_map_.control, q);
-      visit(kappa * radial.weight[i] * tau * map.det, q, map.x);
-    }
-  }
+  reference_rays(centre, degree, [&](double w, const std::array<double, 2>& q) {
+    const MapPoint map = map_point(donor_.degree, thin_donor_map_.control, q);
+    visit(w * map.det, q, map.x);
+  });
 }
 
 // As add_pair().
@@ -242,13 +234,12 @@ void ElementTransfer::add_thin_pair(const Group& g, std::int32_t t, std::int32_t
     return;
   }
   const bool target_framed = !g.target_mapped && target_.degree > 1;
-  const LinearPlace in_target =
-      target_framed ? thin_.place_in(g.given_frame_of_target(t)) : thin_.place_in(target_, t);
-  if (g.target_mapped) thin_.bring(target_, t, thin_target_map_);
-  if (g.target_mapped && bent_) thin_.bring(target_, t, bent_target_);
   const ExactPlace exactly_in_target = target_framed
                                            ? thin_.exact_place_in(g.given_frame_of_target(t))
                                            : thin_.exact_place_in(target_, t);
+  const LinearPlace in_target = thin_.place(exactly_in_target);
+  if (g.target_mapped) thin_.bring(target_, t, thin_target_map_);
+  if (g.target_mapped && bent_) thin_.bring(target_, t, bent_target_);
   std::array<double, 3> lambda{};
   bool warm = false;
   const auto target_at = [&](const Vec2& x) -> std::array<double, 2> {

@@ -235,10 +235,10 @@ class ElementTransfer {
   /// As reference_nodes(), in `own`, which is the donor (`source`) or the target.
   void bent_reference_nodes(const OverlayMesh& mesh, std::int32_t element, const BentElement& own,
                             bool source, std::span<const Segment> run, int degree, int points);
-  /// Calls visit(weight, q) at the points of reference_fan() in an element.
+  /// Calls visit(weight, q) at points on the rays from a centre to the nodes, all in a reference
+  /// triangle: the weights lack the Jacobian there.
   template <class Visit>
-  void bent_reference_fan(const BentElement& own, const std::array<double, 2>& centre, int degree,
-                          const Visit& visit);
+  void reference_rays(const std::array<double, 2>& centre, int degree, const Visit& visit);
   /// Whether products are integrated in the target's reference triangle.
   bool is_in_bent_target(const Group& g, std::int32_t t, std::int32_t d) const;
   void sum_in_bent_target(const Group& g, std::int32_t t, std::int32_t d,

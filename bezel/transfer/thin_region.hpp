@@ -82,6 +82,8 @@ class ThinRegion {
   /// Where points lie in a straight element, or in a frame.
   LinearPlace place_in(const OverlayMesh& mesh, std::int32_t element) const;
   LinearPlace place_in(const Frame& frame) const;
+  /// The same from what exact_place_in() says.
+  LinearPlace place(const ExactPlace& exact) const;
   void bring(const OverlayMesh& mesh, std::int32_t element, MappedElement& out) const;
   // The same without rounding, for regions of bent elements.
   void append(const OverlayMesh& mesh, const Part& part, std::vector<ExactVec2>& out);
@@ -102,7 +104,6 @@ class ThinRegion {
   static ExactVec2 mix(const ExactVec2& a, const ExactVec2& b, double s);
   /// The blossom of exact_ at i times `to` and `from` else.
   const ExactVec2& blossom(const Part& part, std::size_t i);
-  LinearPlace place(const ExactPlace& exact) const;
 
   const OverlayMesh& donor_;
   const OverlayMesh& target_;

@@ -72,7 +72,7 @@ class Cutter {
   }
 
   // The plane through the values at the corners; returns how far it is from the field at the
-  // cell_lattice.
+  // lattice.
   double fit(std::span<const Vec2> net, const std::array<Lambda, 3>& corner, Cell& cell) {
     for (std::size_t q = 0; q < local_.size(); ++q) {
       for (std::size_t c = 0; c < 3; ++c)
