@@ -94,14 +94,14 @@ HWY_INLINE void add_rows(const ElementBatch& batch, std::size_t first, std::size
   }
 }
 
-/// Several components, eight of them in the lanes.
+/// Several components, side by side.
 template <int P>
 void add_components(const ElementBatch& batch, std::size_t first, std::size_t count,
                     const RegionLanes<P>& place, std::size_t components, const double* base,
                     ElementSums& result) {
   constexpr auto size = static_cast<std::size_t>(RegionLanes<P>::size);
   std::array<RegionNumbers<P>, lanes> numbers;
-  for (std::size_t l = 0; l < count; ++l) numbers[l] = RegionNumbers<P>(place, l);
+  for (std::size_t l = 0; l < count; ++l) numbers[l].take(place, l);
   for (std::size_t begin = 0; begin < count;) {
     const std::int64_t owner = batch.owner[first + begin];
     std::size_t end = begin + 1;
@@ -109,14 +109,17 @@ void add_components(const ElementBatch& batch, std::size_t first, std::size_t co
     const auto e = static_cast<std::size_t>(owner);
     double* const product = result.product.data() + e * result.product_stride;
     double* const mass = result.masses.data() + e * result.mass_stride;
-    for (std::size_t c = 0; c < components; c += lanes) {
-      const std::size_t some = std::min(lanes, components - c);
-      const Lanes off = load(base + e * components + c);
-      Lanes total[size], total_mass = load(mass + c);
+    // As many components at once as registers hold.
+    constexpr std::size_t wide = sizeof(LanesPart) / sizeof(double);
+    for (std::size_t c = 0; c < components; c += wide) {
+      const std::size_t some = std::min(wide, components - c);
+      const LanesPart off = load_as<LanesPart>(base + e * components + c);
+      LanesPart total[size], total_mass = load_as<LanesPart>(mass + c);
 #pragma GCC unroll 10
-      for (std::size_t n = 0; n < size; ++n) total[n] = load(product + n * components + c);
+      for (std::size_t n = 0; n < size; ++n)
+        total[n] = load_as<LanesPart>(product + n * components + c);
       for (std::size_t l = begin; l < end; ++l) {
-        Lanes sums[size];
+        LanesPart sums[size];
         total_mass += numbers[l].integrate(batch.donor[first + l] + c, components, off, sums);
 #pragma GCC unroll 10
         for (std::size_t n = 0; n < size; ++n) total[n] += sums[n];

@@ -73,6 +73,17 @@ void append_columns(const double* from, std::size_t stride, std::size_t rows, st
   to.insert(to.end(), buffer.begin(), buffer.end());
 }
 
+/// The first `some` numbers, at most eight, of rows `stride` apart, into rows of eight.
+void gather_lanes(const double* from, std::size_t stride, std::size_t rows, std::size_t some,
+                  double* to) {
+  for (std::size_t n = 0; n < rows; ++n, from += stride, to += lanes) {
+    if (some == lanes)
+      std::copy_n(from, lanes, to);
+    else
+      for (std::size_t k = 0; k < some; ++k) to[k] = from[k];
+  }
+}
+
 /// One element's coefficients from number `begin` on, times the factors, one column after the
 /// other.
 void scale_columns(std::span<const field_detail::Column> columns, std::size_t begin,
@@ -318,22 +329,28 @@ std::vector<std::vector<double>> take_fields(Group& g, std::span<const std::size
         const std::size_t begin = task * some_fields,
                           end = std::min(begin + some_fields, components.size());
         for (std::size_t m = begin; m < end; ++m) parts[m].reserve(rows * components[m]);
-        std::vector<double> buffer;
+        const bool scalars = first[end] - first[begin] == end - begin;
+        std::vector<double> buffer, column;
         field_detail::SurveyRoom room;
         for (std::size_t e = 0; e < elements; e += field_detail::survey_block) {
           const std::size_t last = std::min(e + field_detail::survey_block, elements);
           const std::size_t row = space.offset(ElementId(e));
           const std::size_t count = (last < elements ? space.offset(ElementId(last)) : rows) - row;
           const double* const block = g.out.data() + row * all;
-          for (std::size_t m = begin; m < end; ++m)
-            append_columns(block + first[m], all, count, components[m], buffer, parts[m]);
-          for (std::size_t c = first[begin]; look && c < first[end]; c += lanes) {
+          for (std::size_t c = first[begin]; c < first[end]; c += lanes) {
             const std::size_t some = std::min(lanes, first[end] - c);
             buffer.resize(count * lanes);
-            for (std::size_t n = 0; n < count; ++n)
-              std::copy_n(block + n * all + c, some, buffer.data() + n * lanes);
-            field_detail::look(space, aim, {e, last, c, some, lanes, buffer.data()}, survey, room);
+            gather_lanes(block + c, all, count, some, buffer.data());
+            if (look)
+              field_detail::look(space, aim, {e, last, c, some, lanes, buffer.data()}, survey,
+                                 room);
+            if (scalars) {
+              for (std::size_t k = 0; k < some; ++k)
+                append_columns(buffer.data() + k, lanes, count, 1, column, parts[begin + k]);
+            }
           }
+          for (std::size_t m = begin; m < end && !scalars; ++m)
+            append_columns(block + first[m], all, count, components[m], column, parts[m]);
         }
       },
       threads);

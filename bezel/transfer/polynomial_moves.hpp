@@ -64,7 +64,9 @@ template <int P, class S>
 class Substitution {
  public:
   Substitution() = default;
-  HWY_INLINE explicit Substitution(const S* m) {
+  HWY_INLINE explicit Substitution(const S* m) { set(m); }
+
+  HWY_INLINE void set(const S* m) {
     S powers[P + 1][P + 1];
     powers[0][0] = S{} + 1.0;
 #pragma GCC unroll 4

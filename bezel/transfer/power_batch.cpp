@@ -24,11 +24,15 @@ void powers_of_degree(std::size_t elements, const double* c, const double* facto
   for (std::size_t e = 0; e < elements; ++e, c += size * lanes, to += size * components) {
     Lanes f[size];
     for (std::size_t i = 0; i < size; ++i) f[i] = load(c + i * lanes) * factors[i];
-    for (std::size_t m = 0; m < size; ++m) {
-      Lanes sum{};
+    constexpr std::size_t rows = rows_at_once<size>;
+    for (std::size_t m = 0; m < size; m += rows) {
+      Lanes sum[rows] = {};
+      for (std::size_t i = 0; i < size; ++i) {
 #pragma GCC unroll 10
-      for (std::size_t i = 0; i < size; ++i) sum += f[i] * matrix[i * size + m];
-      store_part(sum, to + m * components, count);
+        for (std::size_t n = 0; n < rows; ++n) sum[n] += f[i] * matrix[i * size + m + n];
+      }
+#pragma GCC unroll 10
+      for (std::size_t n = 0; n < rows; ++n) store_part(sum[n], to + (m + n) * components, count);
     }
   }
 }

@@ -124,33 +124,34 @@ void add_regions(const RegionLanes<P>& place, std::span<const BatchRegion> regio
   }
 }
 
-/// The same for several components, eight of them in the lanes: each has the bits that it has
-/// alone.
+/// The same for several components, side by side: each has the bits that it has alone.
 template <int P>
 void add_components(const RegionLanes<P>& place, std::span<const BatchRegion> regions,
                     std::size_t components, const double* base, double* product, double* mass) {
   constexpr auto size = static_cast<std::size_t>(RegionLanes<P>::size);
+  constexpr std::size_t wide = sizeof(LanesPart) / sizeof(double);
   std::array<RegionNumbers<P>, lanes> numbers;
-  for (std::size_t l = 0; l < regions.size(); ++l) numbers[l] = RegionNumbers<P>(place, l);
-  for (std::size_t c = 0; c < components; c += lanes) {
-    const std::size_t count = std::min(lanes, components - c);
-    const Lanes off = load(base + c);
-    Lanes total[size] = {};
+  for (std::size_t l = 0; l < regions.size(); ++l) numbers[l].take(place, l);
+  for (std::size_t c = 0; c < components; c += wide) {
+    const std::size_t count = std::min(wide, components - c);
+    const LanesPart off = load_as<LanesPart>(base + c);
+    LanesPart total[size] = {};
     for (std::size_t l = 0; l < regions.size(); ++l) {
       double* const own_mass = mass + l * components + c;
       if (regions[l].donor == nullptr || regions[l].far) {
         std::fill_n(own_mass, count, 0.0);
         continue;
       }
-      Lanes sums[size];
+      LanesPart sums[size];
       store_part(numbers[l].integrate(regions[l].donor + c, components, off, sums), own_mass,
                  count);
 #pragma GCC unroll 10
       for (std::size_t n = 0; n < size; ++n) total[n] += sums[n];
     }
+#pragma GCC unroll 10
     for (std::size_t n = 0; n < size; ++n) {
       double* const to = product + n * components + c;
-      store_part(load(to) + total[n], to, count);
+      store_part(load_as<LanesPart>(to) + total[n], to, count);
     }
   }
 }

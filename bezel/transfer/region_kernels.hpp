@@ -67,13 +67,13 @@ HWY_INLINE Lanes place_donors(const TargetLanes& target, Lanes* frame, Lanes* m,
 }
 
 /// sums[n] = integral of f m_n from the moments, both polynomials in the target's coordinates.
-template <int P, class S>
-HWY_INLINE void multiply(const S* moments, const Lanes* f, Lanes* sums) {
+template <int P, class S, class V>
+HWY_INLINE void multiply(const S* moments, const V* f, V* sums) {
 #pragma GCC unroll 4
   for (int b = 0; b <= P; ++b) {
 #pragma GCC unroll 4
     for (int a = 0; a <= P - b; ++a) {
-      Lanes sum{};
+      V sum{};
 #pragma GCC unroll 4
       for (int d = 0; d <= P; ++d) {
 #pragma GCC unroll 4
@@ -93,23 +93,23 @@ struct RegionNumbers {
   double m[4], s, t;
   Substitution<P, double> substitution;
 
-  RegionNumbers() = default;
-  HWY_INLINE RegionNumbers(const RegionLanes<P>& place, std::size_t l) {
+  HWY_INLINE void take(const RegionLanes<P>& place, std::size_t l) {
     const auto lane = [&](const Lanes& x) { return x[l]; };
     for (int n = 0; n < twice; ++n) moments[n] = lane(place.moments[n]);
     for (int i = 0; i < 4; ++i) m[i] = lane(place.m[i]);
     s = lane(place.s);
     t = lane(place.t);
-    if constexpr (P > 0) substitution = Substitution<P, double>(m);
+    if constexpr (P > 0) substitution.set(m);
   }
 
-  /// Eight components of the donor's polynomial, [n][component], less `off`: integrals with the
-  /// target's monomials; those of the whole polynomial are returned.
-  HWY_INLINE Lanes integrate(const double* donor, std::size_t components, const Lanes& off,
-                             Lanes* sums) const {
-    Lanes f[size];
+  /// Some components of the donor's polynomial, [n][component], less `off`, as many as V holds:
+  /// integrals with the target's monomials; those of the whole polynomial are returned.
+  template <class V>
+  HWY_INLINE V integrate(const double* donor, std::size_t components, const V& off, V* sums) const {
+    V f[size];
 #pragma GCC unroll 10
-    for (int n = 0; n < size; ++n) f[n] = load(donor + static_cast<std::size_t>(n) * components);
+    for (int n = 0; n < size; ++n)
+      f[n] = load_as<V>(donor + static_cast<std::size_t>(n) * components);
     f[0] -= off;
     if constexpr (P > 0) {
       move_polynomial<P>(f, s, t);
@@ -134,12 +134,20 @@ HWY_INLINE Lanes solve_lanes(const Lanes* product, const S* basis, const Lanes& 
   const S scale = 0.5 / area, per_function = area / static_cast<double>(size);
   const Lanes mean = mass / covered;
   const Lanes rest = mean - base;
-  Lanes x[padded] = {};
+  Lanes right[size], x[padded] = {};
 #pragma GCC unroll 10
-  for (std::size_t m = 0; m < size; ++m) {
-    const Lanes value = (product[m] - rest * basis[m]) * scale;
+  for (std::size_t m = 0; m < size; ++m) right[m] = (product[m] - rest * basis[m]) * scale;
+  constexpr std::size_t rows = rows_at_once<size>;
+#pragma GCC unroll 2
+  for (std::size_t row = 0; row < size; row += rows) {
+    Lanes own[rows] = {};
+    for (std::size_t m = 0; m < size; ++m) {
 #pragma GCC unroll 10
-    for (std::size_t n = 0; n < size; ++n) x[n] = mul_add(matrix[m * padded + n], value, x[n]);
+      for (std::size_t n = 0; n < rows; ++n)
+        own[n] = mul_add(matrix[m * padded + row + n], right[m], own[n]);
+    }
+#pragma GCC unroll 10
+    for (std::size_t n = 0; n < rows; ++n) x[row + n] = own[n];
   }
   // In the order of sum_of().
   const auto in_order = [](const Lanes* r) {

@@ -181,11 +181,18 @@ HWY_INLINE Lanes lanes_of(double a, double b, double c, double d, double e, doub
 #endif
 }
 #endif
-/// The first `count` numbers, at most eight.
-HWY_INLINE void store_part(const Lanes& x, double* p, std::size_t count) {
-  if (count >= lanes) return store(x, p);
-  alignas(64) double all[lanes];
-  store(x, all);
+/// How many rows of a product of matrices are summed side by side: as many as registers hold, and
+/// enough of them to hide how long a sum takes.
+template <std::size_t rows>
+constexpr std::size_t rows_at_once = HWY_TARGET <= HWY_AVX3 || rows < 10 ? rows : rows / 2;
+
+/// The first `count` numbers, at most all.
+template <class Some>
+HWY_INLINE void store_part(const Some& x, double* p, std::size_t count) {
+  constexpr std::size_t most = sizeof(Some) / sizeof(double);
+  if (count >= most) return store_as(x, p);
+  alignas(64) double all[most];
+  store_as(x, all);
   for (std::size_t l = 0; l < count; ++l) p[l] = all[l];
 }
 
