@@ -36,19 +36,22 @@ void append_part(std::span<const Vec2> curve, const Part& part, const Vec2& orig
   for (const Vec2& p : curve) out.push_back(p - origin);
   if (from == 0.0 && to == 1.0) return;
   Vec2* p = out.data() + first;
-  if (n == 3 && from != 1.0 && to != 0.0) {
-    // The blossom at (from, from), (from, to), (to, to).
-    const Vec2 a = mix(p[0], p[1], from), b = mix(p[1], p[2], from);
-    const Vec2 c = mix(p[0], p[1], to), d = mix(p[1], p[2], to);
+  // The same points in either direction.
+  const double low = std::min(from, to), high = std::max(from, to);
+  if (n == 3) {
+    // The blossom at (low, low), (low, high), (high, high).
+    const Vec2 a = mix(p[0], p[1], low), b = mix(p[1], p[2], low);
+    const Vec2 c = mix(p[0], p[1], high), d = mix(p[1], p[2], high);
     const Vec2 last = p[2];
-    p[0] = from == 0.0 ? p[0] : mix(a, b, from);
-    p[1] = mix(a, b, to);
-    p[2] = to == 1.0 ? last : mix(c, d, to);
+    p[0] = low == 0.0 ? p[0] : mix(a, b, low);
+    p[1] = mix(a, b, high);
+    p[2] = high == 1.0 ? last : mix(c, d, high);
+    if (from > to) std::swap(p[0], p[2]);
     return;
   }
   geometry_kernel::PointBuffer<geometry_kernel::max_curve_points> room;
   Vec2* q = room.data();
-  geometry_kernel::restrict_curve(n - 1, p, std::min(from, to), std::max(from, to), q);
+  geometry_kernel::restrict_curve(n - 1, p, low, high, q);
   for (int i = 0; i < n; ++i) p[i] = from < to ? q[i] : q[n - 1 - i];
 }
 
@@ -69,11 +72,21 @@ Vec2 to_barycentric(const Frame& frame, const Vec2& x) {
 
 }  // namespace
 
-const ElementTransfer::RegionShape& ElementTransfer::shape_of(std::span<const Segment> run) {
+bool ElementTransfer::is_small_donor(std::int32_t d, std::int32_t t) const {
+  return d != exterior && donor_.element_area[static_cast<std::size_t>(d)] <
+                              small_area * target_.element_area[static_cast<std::size_t>(t)];
+}
+
+// The regions of a small donor have points about a place in it, the same in all its targets: seen
+// from theirs, points that are to cancel would be rounded apart by more than its own rounding.
+const ElementTransfer::RegionShape& ElementTransfer::shape_of(std::int32_t t, std::int32_t d,
+                                                              std::span<const Segment> run) {
   static const RegionShape none;
   RegionShape& shape = shape_;
   shape = none;
   shape.run = run;
+  const bool small = is_small_donor(d, t);
+  shape.origin = small ? donor_.corners(d)[0] : element_.origin;
   Vec2 centre;
   Vec2 sum;
   for (const Segment& segment : run) {
@@ -81,15 +94,15 @@ const ElementTransfer::RegionShape& ElementTransfer::shape_of(std::span<const Se
     const Part& part = source ? segment.source : segment.target;
     const auto control = (source ? donor_ : target_).edge(part.edge);
     const std::size_t first = shape.control.size();
-    append_part(control, part, element_.origin, shape.control);
+    append_part(control, part, shape.origin, shape.control);
     shape.degree.push_back(static_cast<int>(control.size()) - 1);
     centre += shape.control[first];
     sum += shape.control.back() - shape.control[first];
   }
   centre *= 1.0 / static_cast<double>(run.size());
   shape.relative = centre;
-  shape.centre = element_.origin + centre;
-  shape.gap = element_.loose ? bridge_joints(shape) : norm(sum);
+  shape.centre = shape.origin + centre;
+  shape.gap = element_.loose ? bridge_joints(shape) : small ? close_joints(shape) : norm(sum);
   for (Vec2& p : shape.control) p -= centre;
   shape.area = 0.5 * twice_piece_area(shape);
   return shape;
@@ -103,6 +116,36 @@ double ElementTransfer::twice_piece_area(const RegionShape& shape) {
     p += degree + 1;
   }
   return twice;
+}
+
+// Where a target's edge crosses the donor's, its pieces begin and end in the point on the donor's:
+// so they do for the other target beside the edge, and what both get adds up to what the donor has.
+double ElementTransfer::close_joints(RegionShape& shape) {
+  double widest = 0.0;
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < shape.run.size(); ++i) {
+    end += static_cast<std::size_t>(shape.degree[i]) + 1;
+    Vec2& last = shape.control[end - 1];
+    std::size_t nearest = 0, of_piece = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0, first = 0; k < shape.run.size(); ++k) {
+      const double distance = norm(shape.control[first] - last);
+      if (distance < least) {
+        least = distance;
+        nearest = first;
+        of_piece = k;
+      }
+      first += static_cast<std::size_t>(shape.degree[k]) + 1;
+    }
+    if (least == 0.0) continue;
+    widest = std::max(widest, least);
+    Vec2& start = shape.control[nearest];
+    if (shape.run[of_piece].target.edge < 0)
+      last = start;
+    else
+      start = last;
+  }
+  return widest;
 }
 
 bool ElementTransfer::by_moments(const Group& g, std::int32_t t, std::int32_t d) {
@@ -150,8 +193,8 @@ bool ElementTransfer::add_pair_moments(const Group& g, std::int32_t t, std::int3
   for (double& m : moments_) m *= in_plane.area;
 
   RegionPlace place;
-  const Vec2 in_target = to_barycentric(target, (element_.origin - target.centre) + shape.relative);
-  const Vec2 in_donor = to_barycentric(donor, (element_.origin - donor.centre) + shape.relative);
+  const Vec2 in_target = to_barycentric(target, (shape.origin - target.centre) + shape.relative);
+  const Vec2 in_donor = to_barycentric(donor, (shape.origin - donor.centre) + shape.relative);
   place.in_target = {in_target[0], in_target[1]};
   place.in_donor = {in_donor[0], in_donor[1]};
   place.to_donor = {first[0], second[0], first[1], second[1]};
@@ -170,7 +213,7 @@ void ElementTransfer::add_apart(std::size_t i, std::int32_t t, std::int32_t d,
     add_thin_pair(g, t, d, run, area, own, mass);
     return;
   }
-  const RegionShape& shape = shape_of(run);
+  const RegionShape& shape = shape_of(t, d, run);
   if (add_pair_moments(g, t, d, shape, own, mass)) return;
   begin_sums(i);
   add_pair(g, t, d, shape, area, own, mass);
@@ -241,10 +284,10 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
       note_thin_region(t, d, shape, outcome);
       return;
     }
-    const RegionShape* shape = &shape_of(run_of(own, k));
+    const RegionShape* shape = &shape_of(t, d, run_of(own, k));
     if (!element_.loose && !is_closed(t, d, shape->gap)) {
       element_.loose = true;
-      shape = &shape_of(run_of(own, k));
+      shape = &shape_of(t, d, run_of(own, k));
     }
     regions[k].area = shape->area;
     regions[k].apart = !shape->bridges.empty();
@@ -286,7 +329,7 @@ bool ElementTransfer::shape_regions(std::int32_t t, const ElementPieces& own, st
     if (d != exterior) {
       const double donor_area = donor_.element_area[static_cast<std::size_t>(d)];
       const double donor_size = donor_.element_diameter[static_cast<std::size_t>(d)];
-      small = donor_area < small_area * own_area;
+      small = is_small_donor(d, t);
       // The usual case, as is_closed() and note_region() have it.
       if (!small && !element_.loose && area >= 0.0 && closes(gap, own_size, own_area) &&
           closes(gap, donor_size, donor_area)) {

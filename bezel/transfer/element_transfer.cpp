@@ -116,7 +116,7 @@ void ElementTransfer::boundary_nodes(const RegionShape& shape, int degree) {
   }
   for (const Bridge& bridge : shape.bridges) {
     Node node;
-    node.x = element_.origin + bridge.from + 0.5 * bridge.step;
+    node.x = shape.origin + bridge.from + 0.5 * bridge.step;
     node.dx = bridge.step;
     nodes_.push_back(node);
   }
@@ -155,7 +155,7 @@ void ElementTransfer::reference_nodes(const OverlayMesh& mesh, std::int32_t elem
   }
   for (const Bridge& bridge : shape.bridges) {
     Node node;
-    node.x = element_.origin + bridge.from + 0.5 * bridge.step;
+    node.x = shape.origin + bridge.from + 0.5 * bridge.step;
     node.dx = bridge.step;
     std::array<double, 3> lambda{};
     if (!invert_map(mesh.degree, mesh.element(element), node.x, lambda, false)) continue;
@@ -385,7 +385,7 @@ void ElementTransfer::add_pair(const Group& g, std::int32_t t, std::int32_t d,
 std::span<const std::array<Vec2, 2>> ElementTransfer::plane_bridges(const RegionShape& shape) {
   plane_bridges_.clear();
   for (const Bridge& bridge : shape.bridges)
-    plane_bridges_.push_back({element_.origin + bridge.from, bridge.step});
+    plane_bridges_.push_back({shape.origin + bridge.from, bridge.step});
   return plane_bridges_;
 }
 
@@ -504,7 +504,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
         if (!(silent || policy_ == Uncovered::extend)) continue;
         if (i == 0) extended += area;
         begin_sums(i);
-        const RegionShape& shape = shape_of(run_of(own, k));
+        const RegionShape& shape = shape_of(t, d, run_of(own, k));
         if (blocks != nullptr) {
           extension_blocks(g, t, shape, area, state.sums, *blocks, outcome.extension);
           continue;
@@ -520,7 +520,7 @@ ElementOutcome ElementTransfer::process(std::int32_t t, const ElementPieces& own
           begin_moments(i);
           add_apart(i, t, d, run_of(own, k), area, false, here);
         } else {
-          const RegionShape& shape = shape_of(run_of(own, k));
+          const RegionShape& shape = shape_of(t, d, run_of(own, k));
           if (fitted && g.donor_mapped) {
             fitted_mass_.assign(nc, 0.0);
             add_pair(g, t, d, shape, area, state, fitted_mass_);

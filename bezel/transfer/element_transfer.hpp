@@ -107,15 +107,16 @@ class ElementTransfer {
   // next a new one is assigned to it as a whole, so that nothing is left of the one before; its
   // lists keep their storage.
 
-  /// A straight piece across an open joint, from the element's origin.
+  /// A straight piece across an open joint, from the shape's origin.
   struct Bridge {
     Vec2 from, step;
   };
   /// The boundary of a region.
   struct RegionShape {
     std::span<const Segment> run;
+    Vec2 origin;    ///< of the points before they were moved to the centre
     Vec2 centre;    ///< mean of the corners
-    Vec2 relative;  ///< the same, from the element's origin
+    Vec2 relative;  ///< the same, from the origin
     double area = 0;
     double gap = 0;          ///< the widest open joint
     Refilled<Vec2> control;  ///< of the pieces and bridges, from the centre
@@ -170,10 +171,14 @@ class ElementTransfer {
   void begin_element(std::int32_t t, bool loose);
   void boundary_nodes(const RegionShape& shape, int degree);
   /// Valid until the next call.
-  const RegionShape& shape_of(std::span<const Segment> run);
+  const RegionShape& shape_of(std::int32_t t, std::int32_t d, std::span<const Segment> run);
+  /// Whether masses about a place in the target would be known to its rounding rather than the
+  /// donor's.
+  bool is_small_donor(std::int32_t d, std::int32_t t) const;
   /// Of the pieces about where they are taken from.
   static double twice_piece_area(const RegionShape& shape);
   double bridge_joints(RegionShape& shape);
+  double close_joints(RegionShape& shape);
   /// Starts and steps of bridges in the plane.
   std::span<const std::array<Vec2, 2>> plane_bridges(const RegionShape& shape);
   void note_partition(std::int32_t t, double total, ElementOutcome& outcome) const;

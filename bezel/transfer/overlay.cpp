@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tuple>
 
 #include "bezel/base/error.hpp"
@@ -520,18 +521,28 @@ void collect_segments(const ElementPieces& own, std::vector<Segment>& out) {
     out.assign(own.segments.begin(), own.segments.end());
     return;
   }
-  for (std::size_t region = 0; region < own.donors.size(); ++region) {
-    const auto number = static_cast<std::int32_t>(region);
+  // Where each region's next segment goes.
+  std::vector<std::size_t> place(own.donors.size() + 1, 0);
+  const auto visit = [&](const auto& add) {
     for (const BoundaryPiece& piece : own.pieces) {
-      if (piece.left != number && piece.right != number) continue;
-      Part part = piece.part;
-      if (piece.left != number) std::swap(part.from, part.to);
-      Segment segment;
-      segment.donor = own.donors[region];
-      (piece.source ? segment.source : segment.target) = part;
-      out.push_back(segment);
+      add(piece.left, piece, false);
+      if (piece.right >= 0 && piece.right != piece.left) add(piece.right, piece, true);
     }
-  }
+  };
+  visit([&](std::int32_t region, const BoundaryPiece&, bool) {
+    ++place[static_cast<std::size_t>(region) + 1];
+  });
+  std::partial_sum(place.begin(), place.end(), place.begin());
+  out.resize(place.back());
+  visit([&](std::int32_t region, const BoundaryPiece& piece, bool reversed) {
+    const auto r = static_cast<std::size_t>(region);
+    Part part = piece.part;
+    if (reversed) std::swap(part.from, part.to);
+    Segment segment;
+    segment.donor = own.donors[r];
+    (piece.source ? segment.source : segment.target) = part;
+    out[place[r]++] = segment;
+  });
 }
 
 }  // namespace bezel::detail

@@ -14,6 +14,7 @@
 #include "bezel/transfer/transfer.hpp"
 #include "support/conservation.hpp"
 #include "support/mesh_pairs.hpp"
+#include "support/swept.hpp"
 
 namespace bezel {
 namespace {
@@ -65,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(Geometry, BentLayers, ::testing::Values(2, 3));
 // 1e-3 and 1e-4), 3e-16, 5e-16 and 4e-16 else. Affine planes gave 6e-12, 2e-10 and 2e-10 at 1e-6.
 TEST_P(BentLayers, OntoAnotherLayer) {
   for (const double angle : {0.0, 0.3}) {
-    for (const double w : {1e-3, 1e-4, 1e-5, 1e-6}) {
+    for (const double w : test::swept({1e-3, 1e-4, 1e-5, 1e-6})) {
       for (const auto& [from, to, bend] : {std::tuple(1, 1, 0.5), std::tuple(3, 2, 0.1)}) {
         const MeshPtr donor = layer(5, GetParam(), w, bend, angle),
                       target = layer(7, GetParam(), w, bend, angle);
@@ -128,7 +129,7 @@ TEST_P(BentLayers, FromRoundDonors) {
 // either side may see that differently in their planes: then the strip between goes to neither.
 // Largest seen: 4e-14 of the mass.
 TEST_P(BentLayers, AlongAnArc) {
-  for (const double w : {1e-3, 1e-5, 1e-6}) {
+  for (const double w : test::swept({1e-3, 1e-5, 1e-6})) {
     for (const auto& [from, to] : {std::pair(4, 4), std::pair(6, 4), std::pair(4, 6)}) {
       const Field field = constant_and_noise(Space::discontinuous(arc(from, GetParam(), w), 1));
       const TransferResult result = moved(field, arc(to, GetParam(), w), 1, Uncovered::extend);

@@ -15,6 +15,7 @@
 #include "support/conservation.hpp"
 #include "support/mesh_pairs.hpp"
 #include "support/slow_projection.hpp"
+#include "support/swept.hpp"
 
 namespace bezel {
 namespace {
@@ -40,7 +41,8 @@ template <class Check>
 void transfer_each(const MeshPtr& donor, const MeshPtr& target, Uncovered policy,
                    const std::string& where, const Check& check) {
   for (const Basis basis : {Basis::reference, Basis::physical}) {
-    for (const auto& [from, to] : {std::pair(0, 1), std::pair(2, 2), std::pair(3, 1)}) {
+    for (const auto& [from, to] :
+         test::swept({std::pair(0, 1), std::pair(2, 2), std::pair(3, 1)})) {
       const Field field = constant_and_noise(Space::discontinuous(donor, from, basis));
       TransferOptions options;
       options.degree = to;
@@ -237,7 +239,7 @@ TEST_P(FlatMeshes, StripsAcrossStrips) {
   const auto donor = test::grid_mesh(3, GetParam(), 1.0, test::bend(0.1, 0.1));
   const auto target = test::grid_mesh(2, GetParam(), 1.0, test::bend(-0.1, 0.1));
   const Vec2 to{{1.0, -0.5}};
-  for (const double flat : {1e-4, 1e-6})
+  for (const double flat : test::swept({1e-4, 1e-6}))
     expect_exact(strip(donor, flat, 0.3, to), strip(target, 1e-6, 1.4, to), Uncovered::extend,
                  "across");
 }

@@ -218,6 +218,35 @@ TEST(ElementOverlay, ChunksGiveTheSamePieces) {
   }
 }
 
+// Region by region, each in the order of the pieces, which run with the region on their left.
+TEST(Overlay, SegmentsComeByRegion) {
+  const std::vector<std::int32_t> donors = {7, exterior, 3, 5};
+  const std::vector<BoundaryPiece> pieces = {{{10, 0.0, 0.5}, false, 1, -1},
+                                             {{20, 0.0, 1.0}, true, 0, 2},
+                                             {{11, 0.25, 0.75}, false, 2, -1},
+                                             {{21, 0.5, 1.0}, true, 2, 1},
+                                             {{22, 0.0, 1.0}, true, 0, 0}};
+  std::vector<Segment> segments;
+  collect_segments({donors, pieces, {}}, segments);
+  struct Expected {
+    std::int32_t donor, target, source;
+    double from, to;
+  };
+  const std::vector<Expected> expected = {
+      {7, -1, 20, 0.0, 1.0},        {7, -1, 22, 0.0, 1.0}, {exterior, 10, -1, 0.0, 0.5},
+      {exterior, -1, 21, 1.0, 0.5}, {3, -1, 20, 1.0, 0.0}, {3, 11, -1, 0.25, 0.75},
+      {3, -1, 21, 0.5, 1.0}};
+  ASSERT_EQ(segments.size(), expected.size());
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const Part& part = expected[i].target >= 0 ? segments[i].target : segments[i].source;
+    EXPECT_EQ(segments[i].donor, expected[i].donor) << i;
+    EXPECT_EQ(segments[i].target.edge, expected[i].target) << i;
+    EXPECT_EQ(segments[i].source.edge, expected[i].source) << i;
+    EXPECT_EQ(part.from, expected[i].from) << i;
+    EXPECT_EQ(part.to, expected[i].to) << i;
+  }
+}
+
 TEST(CurvePoint, EqualsTheDefinition) {
   RandomStream random("curve point", 1);
   for (std::size_t n = 2; n <= 11; ++n) {
