@@ -136,6 +136,8 @@ void add_view(CLI::App& app, Context& context) {
   command->add_option("--columns", o.draw.columns, "Panels per row (default: by their shape)")
       ->check(CLI::Range(1, 100))
       ->type_name("N");
+  command->add_flag("--same-scale", o.draw.same_scale,
+                    "A length is equally long in all panels (default: each fills its place)");
   command->add_flag("--lines,!--no-lines", o.lines, "Draw the mesh lines, or not (default: drawn)");
 }
 

@@ -148,7 +148,7 @@ Outcome run(int n, bool bounds, const std::string& picture) {
     outcome.hi = std::max(outcome.hi, report.max_after);
     if (k % (steps / 2) == 0) panels.push_back(panel(fresh, u, t));
   }
-  if (!picture.empty()) draw(picture, panels);
+  if (!picture.empty()) draw(picture, panels, {.same_scale = true});
   // At t = 1 the particle at (x, y) came from (x - (y^2 - y + 1/3), y - 1).
   const Formula exact("exp(-4*((x-(y^2-y+1/3)-0.2)^2 + (y-1+0.1)^2))");
   outcome.error = error_norms(u, std::array{exact}).l2_relative;
@@ -163,9 +163,7 @@ void draw_meshes(const std::string& path) {
     panels.push_back(panel(carried(*start, t), {}, t));
   panels.push_back(panel(fresh_mesh(6, 1.0, 0.2, 1), {}, 1.0));
   panels.back().title = "made anew";
-  DrawOptions options;
-  options.columns = 3;
-  draw(path, panels, options);
+  draw(path, panels, {.columns = 3, .same_scale = true});
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "bezel/base/atomic_file.hpp"
 #include "bezel/base/error.hpp"
@@ -125,7 +126,26 @@ Box2 panel_box(const Panel& panel) {
   return box;
 }
 
-Layout lay_out(const std::vector<Panel>& panels, const DrawOptions& options, double label_width) {
+/// What each panel shows: its meshes, of one scale if wanted.
+std::vector<Box2> shown_boxes(const std::vector<Panel>& panels, const DrawOptions& options) {
+  std::vector<Box2> boxes;
+  Vec2 largest;
+  for (const Panel& panel : panels) {
+    boxes.push_back(panel_box(panel));
+    const Vec2 size = boxes.back().hi - boxes.back().lo;
+    for (int axis = 0; axis < 2; ++axis) largest[axis] = std::max(largest[axis], size[axis]);
+  }
+  if (!options.same_scale) return boxes;
+  for (Box2& box : boxes) {
+    const Vec2 centre = box.centre();
+    box.include(centre - 0.5 * largest);
+    box.include(centre + 0.5 * largest);
+  }
+  return boxes;
+}
+
+Layout lay_out(const std::vector<Panel>& panels, std::span<const Box2> boxes,
+               const DrawOptions& options, double label_width) {
   Layout s{};
   const int count = static_cast<int>(panels.size());
   s.columns = options.columns == 0 ? count : std::min(options.columns, count);
@@ -147,10 +167,8 @@ Layout lay_out(const std::vector<Panel>& panels, const DrawOptions& options, dou
     s.height = options.height;
   } else {
     double aspect = 0.0;
-    for (const Panel& panel : panels) {
-      const Box2 box = panel_box(panel);
+    for (const Box2& box : boxes)
       aspect = std::max(aspect, (box.hi.y() - box.lo.y()) / (box.hi.x() - box.lo.x()));
-    }
     // Room for the colour bar's labels even beside a very flat mesh.
     const double panel = std::clamp(s.panel_width * aspect, 90.0 * s.unit, 2.0 * s.panel_width);
     const double height = 2.0 * s.margin + s.rows * (s.title_height + panel) + (s.rows - 1) * s.gap;
@@ -194,9 +212,9 @@ void draw_mesh_lines(Canvas& canvas, const Layer& layer, std::size_t number,
   canvas.stroke(path, stroke);
 }
 
-void draw_panel(Canvas& canvas, const Panel& panel, const Box2& pixels,
+void draw_panel(Canvas& canvas, const Panel& panel, const Box2& shown, const Box2& pixels,
                 const bernstein::Range& range, const ColourMap& map, double unit) {
-  const Viewport viewport = fit(panel_box(panel), pixels);
+  const Viewport viewport = fit(shown, pixels);
   for (std::size_t l = 0; l < panel.layers.size(); ++l) {
     const Layer& layer = panel.layers[l];
     if (layer.field) {
@@ -263,7 +281,8 @@ void draw(const std::string& path, const std::vector<Panel>& panels, const DrawO
 
   // The labels' width decides the panels' width, which decides the height and so the number of
   // labels.
-  Layout s = lay_out(panels, options, 0.0);
+  const std::vector<Box2> shown = shown_boxes(panels, options);
+  Layout s = lay_out(panels, shown, options, 0.0);
   Ticks ticks;
   const std::string name = bar ? common_name(panels) : "";
   if (bar) {
@@ -274,7 +293,7 @@ void draw(const std::string& path, const std::vector<Panel>& panels, const DrawO
       double width = view::text_width(name, {s.label_size, ink}) - s.bar_width - 8.0 * s.unit;
       for (const std::string& label : ticks.labels)
         width = std::max(width, view::text_width(label, {s.label_size, ink}));
-      s = lay_out(panels, options, std::min(std::max(width, 1.0), 0.25 * options.width));
+      s = lay_out(panels, shown, options, std::min(std::max(width, 1.0), 0.25 * options.width));
     }
   }
 
@@ -288,7 +307,7 @@ void draw(const std::string& path, const std::vector<Panel>& panels, const DrawO
         Vec2{{s.margin + column * (s.panel_width + s.gap),
               s.margin + s.title_height + row * (s.title_height + s.panel_height + s.gap)}});
     box.include(box.lo + Vec2{{s.panel_width, s.panel_height}});
-    draw_panel(*canvas, panels[p], box, range, map, s.unit);
+    draw_panel(*canvas, panels[p], shown[p], box, range, map, s.unit);
     if (!panels[p].title.empty()) {
       TextStyle style{s.title_size, ink, Anchor::middle};
       // A long title shrinks to its panel, to half its size at most.

@@ -26,11 +26,13 @@ struct Panel {
 };
 
 struct DrawOptions {
-  int width = 1200, height = 0;        ///< pixels; height 0: from the aspect ratio
-  std::string colour_map = "viridis";  ///< viridis, cividis, coolwarm, grey
-  std::optional<double> lo, hi;  ///< colour range; default: the fields' range, shared by all panels
+  int width = 1200, height = 0;            ///< pixels; height 0: from the aspect ratio
+  std::string colour_map = "viridis";      ///< viridis, cividis, coolwarm, grey
+  std::optional<double> lo = {}, hi = {};  ///< colour range; default: the fields' range, shared
+                                           ///< by all panels
   bool colour_bar = true;
-  int columns = 0;  ///< panels per row; 0: all in one row
+  int columns = 0;          ///< panels per row; 0: all in one row
+  bool same_scale = false;  ///< a length is equally long in all panels; else each fills its place
 };
 
 /// Draws panels side by side to a .svg or .png file (by extension), atomically. Curved elements are

@@ -1,9 +1,12 @@
 #include "bezel/view/draw.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <pugixml.hpp>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "bezel/base/atomic_file.hpp"
 #include "image.hpp"
@@ -110,6 +113,47 @@ TEST(Draw, ConstantAndVectorFieldsAndSeveralPanels) {
     draw(scratch(name), {a, b}, options);
     EXPECT_GT(std::filesystem::file_size(scratch(name)), 500U);
   }
+}
+
+/// How wide each mesh of straight elements is drawn in an SVG file.
+std::vector<double> drawn_widths(const std::string& svg) {
+  std::vector<double> widths;
+  const std::string begin = "<path d=\"";
+  for (std::size_t at = svg.find(begin); at != std::string::npos; at = svg.find(begin, at + 1)) {
+    std::string path =
+        svg.substr(at + begin.size(), svg.find('"', at + begin.size()) - at - begin.size());
+    if (path.find('M', 1) == std::string::npos) continue;  // one line: of something else
+    std::replace_if(
+        path.begin(), path.end(), [](char c) { return c == 'M' || c == 'L'; }, ' ');
+    std::istringstream numbers(path);
+    double lo = 1e9, hi = -1e9;
+    for (double x = 0, y = 0; numbers >> x >> y;) {
+      lo = std::min(lo, x);
+      hi = std::max(hi, x);
+    }
+    widths.push_back(hi - lo);
+  }
+  return widths;
+}
+
+TEST(Draw, PanelsMayHaveOneScale) {
+  std::vector<Panel> panels(2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    Layer layer;
+    layer.mesh = test::grid_mesh(1, 1, i == 0 ? 1.0 : 0.25, test::same_place);
+    panels[i].layers = {layer};
+  }
+  DrawOptions options;
+  draw(scratch("filled.svg"), panels, options);
+  options.same_scale = true;
+  draw(scratch("scaled.svg"), panels, options);
+  const std::vector<double> filled = drawn_widths(read_file(scratch("filled.svg"))),
+                            scaled = drawn_widths(read_file(scratch("scaled.svg")));
+  ASSERT_EQ(filled.size(), 2U);
+  ASSERT_EQ(scaled.size(), 2U);
+  EXPECT_NEAR(filled[1], filled[0], 0.1);
+  EXPECT_NEAR(scaled[0], filled[0], 0.1);
+  EXPECT_NEAR(scaled[1], 0.25 * scaled[0], 0.1);
 }
 
 TEST(Draw, ErrorsNameWhatIsWrongAndLeaveNoFile) {
