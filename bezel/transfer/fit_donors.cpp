@@ -41,7 +41,7 @@ void FitDonors::make_mass(const Group& g, FitDonor& donor) {
   const auto nc = static_cast<std::size_t>(g.components);
   donor.map.set(donor_.degree, donor_.element(d));
   const int pd = g.donor_space->degree(ElementId(d));
-  const int degree = mass_degree(donor_, pd);
+  const int degree = donor.degree = mass_degree(donor_, pd);
   const FitTable& table = fit_table(degree);
   room_.reserve(table, nc, degree);
   for (std::size_t q = 0; q < table.padded; ++q) {
@@ -73,10 +73,9 @@ int FitDonors::mass_points(int degree) {
 
 // By a rule whose parts cancel between neighbouring target elements: along the donor's own sides
 // exact, along a target edge with nodes that both elements beside it have.
-void FitDonors::integrate(const FitDonor& donor, int degree, std::span<const Segment> run,
-                          double area, std::span<const std::array<Vec2, 2>> bridges,
-                          std::span<double> mass) {
-  const int pulled = mass_points(degree);
+void FitDonors::integrate(const FitDonor& donor, std::span<const Segment> run, double area,
+                          std::span<const std::array<Vec2, 2>> bridges, std::span<double> mass) {
+  const int degree = donor.degree, pulled = mass_points(degree);
   boundary_.clear();
   for (const Segment& segment : run) {
     if (segment.source.edge >= 0) continue;

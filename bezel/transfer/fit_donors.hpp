@@ -26,6 +26,7 @@ struct FitRoom {
 struct FitDonor {
   std::int32_t element = exterior;
   MapPolynomial map;         ///< of mapped donors
+  int degree = 0;            ///< likewise: of (f - mean) det
   std::vector<double> mean;  ///< by component, Group::constants_of
   std::vector<double> mass;  ///< of mapped donors, [component][row]: (f - mean) det in the frame of
                              ///< the reference triangle
@@ -47,7 +48,7 @@ class FitDonors {
   /// close the region's joints: their starts and steps in the plane.
   /// @param area  of the region
   /// @param mass  out, [component]
-  void integrate(const FitDonor& donor, int degree, std::span<const Segment> run, double area,
+  void integrate(const FitDonor& donor, std::span<const Segment> run, double area,
                  std::span<const std::array<Vec2, 2>> bridges, std::span<double> mass);
   /// Degree in the reference triangle of a mapped donor's polynomial of a degree, times the
   /// Jacobian.

@@ -269,7 +269,7 @@ bool PairFit::add(std::int32_t d, std::size_t begin, std::size_t end, double are
   const std::span<const Segment> run = work_.segments.subspan(begin, end - begin);
   const FitDonor& donor = donor_of(d);
   if (g.donor_mapped)
-    donors_.integrate(donor, FitDonors::mass_degree(donor_, pd), run, area, {}, mass);
+    donors_.integrate(donor, run, area, {}, mass);
   else if (g.target_mapped && !plane_mass(d, run, area, mass))
     return false;
   if (!work_.placed) return false;
@@ -305,9 +305,7 @@ bool PairFit::add(std::int32_t d, std::size_t begin, std::size_t end, double are
 
 void PairFit::mass_of(std::int32_t d, std::size_t begin, std::size_t end, double area,
                       std::span<const std::array<Vec2, 2>> bridges, std::span<double> mass) {
-  const int pd = work_.fields->donor_space->degree(ElementId(d));
-  donors_.integrate(donor_of(d), FitDonors::mass_degree(donor_, pd),
-                    work_.segments.subspan(begin, end - begin), area, bridges, mass);
+  donors_.integrate(donor_of(d), work_.segments.subspan(begin, end - begin), area, bridges, mass);
 }
 
 // Exactly, in the plane.

@@ -37,11 +37,11 @@ TEST(FitDonors, MassesOfWholeElementsAreTheFields) {
         run.push_back(segment);
       }
       std::vector<double> own(2), pulled(2);
-      const int degree = FitDonors::mass_degree(overlay, p);
-      donors.integrate(donor, degree, run, overlay.element_area[at], {}, own);
+      EXPECT_EQ(donor.degree, FitDonors::mass_degree(overlay, p));
+      donors.integrate(donor, run, overlay.element_area[at], {}, own);
       // The same by the curves of a target, here the element itself.
       for (Segment& segment : run) std::swap(segment.source, segment.target);
-      donors.integrate(donor, degree, run, overlay.element_area[at], {}, pulled);
+      donors.integrate(donor, run, overlay.element_area[at], {}, pulled);
       for (std::size_t c = 0; c < 2; ++c) {
         EXPECT_NEAR(own[c], group.donor_mass[2 * at + c], 1e-15);
         EXPECT_NEAR(pulled[c], group.donor_mass[2 * at + c], 1e-15);
@@ -68,9 +68,8 @@ TEST(FitDonors, BridgesCloseARegion) {
   const Vec2 from = curve_point(curve, 0.5 + 1e-4), to = curve_point(curve, 0.5);
   const std::array<std::array<Vec2, 2>, 1> bridge = {{{from, to - from}}};
   std::vector<double> open(2), closed(2);
-  const int degree = FitDonors::mass_degree(overlay, 1);
-  donors.integrate(donor, degree, {&segment, 1}, 0.0, {}, open);
-  donors.integrate(donor, degree, {&segment, 1}, 0.0, bridge, closed);
+  donors.integrate(donor, {&segment, 1}, 0.0, {}, open);
+  donors.integrate(donor, {&segment, 1}, 0.0, bridge, closed);
   EXPECT_GT(std::abs(open[0]) + std::abs(open[1]), 1e-6);
   for (const double mass : closed) EXPECT_NEAR(mass, 0.0, 1e-10);
 }
