@@ -90,18 +90,17 @@ void find_absolute(const Space& space, const AbsIntegral& absolute, const Survey
   }
 }
 
-/// Copies `count` numbers of each row.
-void copy_rows(std::size_t rows, const double* from, std::size_t count, double* to,
-               std::size_t stride) {
-  for (std::size_t r = 0; r < rows; ++r, from += lanes, to += stride) {
+}  // namespace
+
+void copy_rows(std::size_t rows, std::size_t count, const double* from, std::size_t from_stride,
+               double* to, std::size_t to_stride) {
+  for (std::size_t r = 0; r < rows; ++r, from += from_stride, to += to_stride) {
     if (count == lanes)
       std::copy_n(from, lanes, to);
     else
       for (std::size_t k = 0; k < count; ++k) to[k] = from[k];
   }
 }
-
-}  // namespace
 
 std::vector<Column> columns_of(std::span<const Field* const> fields) {
   std::vector<Column> columns;
@@ -131,7 +130,7 @@ void look(const Space& space, const SurveyAim& aim, const SurveyBlock& block, Su
   look_at_elements(space, aim, block, room.found);
   const std::size_t begin = block.from * components + block.first;
   if (!aim.basis_integrals.empty())
-    copy_rows(block.to - block.from, room.found.integral.data(), block.count,
+    copy_rows(block.to - block.from, block.count, room.found.integral.data(), lanes,
               survey.integrals.data() + begin, components);
   if (aim.absolute != nullptr)
     find_absolute(space, *aim.absolute, block, components, room, survey.absolute.data() + begin);

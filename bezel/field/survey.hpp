@@ -21,6 +21,10 @@ struct Column {
   std::size_t stride;
 };
 
+/// Copies the first `count` numbers, at most eight, of rows that are some stride apart.
+void copy_rows(std::size_t rows, std::size_t count, const double* from, std::size_t from_stride,
+               double* to, std::size_t to_stride);
+
 /// The components of some fields, one field after the other.
 std::vector<Column> columns_of(std::span<const Field* const> fields);
 

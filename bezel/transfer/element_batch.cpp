@@ -110,9 +110,8 @@ void add_components(const ElementBatch& batch, std::size_t first, std::size_t co
     double* const product = result.product.data() + e * result.product_stride;
     double* const mass = result.masses.data() + e * result.mass_stride;
     // As many components at once as registers hold.
-    constexpr std::size_t wide = sizeof(LanesPart) / sizeof(double);
-    for (std::size_t c = 0; c < components; c += wide) {
-      const std::size_t some = std::min(wide, components - c);
+    for (std::size_t c = 0; c < components; c += part_size) {
+      const std::size_t some = std::min(part_size, components - c);
       const LanesPart off = load_as<LanesPart>(base + e * components + c);
       LanesPart total[size], total_mass = load_as<LanesPart>(mass + c);
 #pragma GCC unroll 10

@@ -73,17 +73,6 @@ void append_columns(const double* from, std::size_t stride, std::size_t rows, st
   to.insert(to.end(), buffer.begin(), buffer.end());
 }
 
-/// The first `some` numbers, at most eight, of rows `stride` apart, into rows of eight.
-void gather_lanes(const double* from, std::size_t stride, std::size_t rows, std::size_t some,
-                  double* to) {
-  for (std::size_t n = 0; n < rows; ++n, from += stride, to += lanes) {
-    if (some == lanes)
-      std::copy_n(from, lanes, to);
-    else
-      for (std::size_t k = 0; k < some; ++k) to[k] = from[k];
-  }
-}
-
 /// One element's coefficients from number `begin` on, times the factors, one column after the
 /// other.
 void scale_columns(std::span<const field_detail::Column> columns, std::size_t begin,
@@ -337,10 +326,10 @@ std::vector<std::vector<double>> take_fields(Group& g, std::span<const std::size
           const std::size_t row = space.offset(ElementId(e));
           const std::size_t count = (last < elements ? space.offset(ElementId(last)) : rows) - row;
           const double* const block = g.out.data() + row * all;
-          for (std::size_t c = first[begin]; c < first[end]; c += lanes) {
+          for (std::size_t c = first[begin]; (look || scalars) && c < first[end]; c += lanes) {
             const std::size_t some = std::min(lanes, first[end] - c);
             buffer.resize(count * lanes);
-            gather_lanes(block + c, all, count, some, buffer.data());
+            field_detail::copy_rows(count, some, block + c, all, buffer.data(), lanes);
             if (look)
               field_detail::look(space, aim, {e, last, c, some, lanes, buffer.data()}, survey,
                                  room);

@@ -129,11 +129,10 @@ template <int P>
 void add_components(const RegionLanes<P>& place, std::span<const BatchRegion> regions,
                     std::size_t components, const double* base, double* product, double* mass) {
   constexpr auto size = static_cast<std::size_t>(RegionLanes<P>::size);
-  constexpr std::size_t wide = sizeof(LanesPart) / sizeof(double);
   std::array<RegionNumbers<P>, lanes> numbers;
   for (std::size_t l = 0; l < regions.size(); ++l) numbers[l].take(place, l);
-  for (std::size_t c = 0; c < components; c += wide) {
-    const std::size_t count = std::min(wide, components - c);
+  for (std::size_t c = 0; c < components; c += part_size) {
+    const std::size_t count = std::min(part_size, components - c);
     const LanesPart off = load_as<LanesPart>(base + c);
     LanesPart total[size] = {};
     for (std::size_t l = 0; l < regions.size(); ++l) {

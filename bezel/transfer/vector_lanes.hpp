@@ -26,6 +26,7 @@ namespace bezel::detail::HWY_NAMESPACE {
 // that wide. Only mul_add() is fused, so every target that can fuse gives the same bits.
 #if HWY_TARGET <= HWY_AVX3
 
+constexpr std::size_t part_size = lanes;
 using Lanes [[gnu::vector_size(sizeof(double) * lanes)]] = double;
 
 HWY_INLINE Lanes lanes_of(double a, double b, double c, double d, double e, double f, double g,

@@ -147,6 +147,19 @@ TEST(Survey, ShowsEachCoefficientOnce) {
   }
 }
 
+TEST(Survey, CopiesTheFirstNumbersOfRows) {
+  constexpr std::size_t rows = 3, from_stride = 11, to_stride = 9;
+  std::vector<double> from(rows * from_stride);
+  for (std::size_t i = 0; i < from.size(); ++i) from[i] = static_cast<double>(i);
+  for (std::size_t count = 1; count <= lanes; ++count) {
+    std::vector<double> to(rows * to_stride, -1.0);
+    copy_rows(rows, count, from.data(), from_stride, to.data(), to_stride);
+    for (std::size_t r = 0; r < rows; ++r)
+      for (std::size_t k = 0; k < to_stride; ++k)
+        EXPECT_EQ(to[r * to_stride + k], k < count ? from[r * from_stride + k] : -1.0) << count;
+  }
+}
+
 TEST(Ranges, FromASurveyAreThoseOfTheField) {
   for (const auto& space : some_spaces()) {
     const std::vector<Field> fields = some_fields(space);
